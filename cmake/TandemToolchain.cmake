@@ -1,0 +1,45 @@
+# The language level, warnings, sanitizers and floating-point rules of every target.
+include_guard()
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Release, Debug or RelWithDebInfo" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+
+find_program(TANDEM_CCACHE ccache)
+if(TANDEM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${TANDEM_CCACHE}")
+endif()
+
+# Tandem's promise is results that agree to the last bit: no contraction into fma, no reassociation.
+set(TANDEM_FLOATING_POINT_OPTIONS -ffp-contract=off -fno-fast-math)
+
+if(TANDEM_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+endif()
+
+# tandem_target(NAME): what every target of the project has in common. Headers are included as "folder/file.hpp".
+function(tandem_target target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wconversion -Wno-sign-conversion ${TANDEM_FLOATING_POINT_OPTIONS})
+  if(TANDEM_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+endfunction()
+
+# tandem_library(NAME SOURCES...): a static library tandem_NAME with the alias Tandem::NAME.
+function(tandem_library name)
+  add_library(tandem_${name} STATIC ${ARGN})
+  add_library(Tandem::${name} ALIAS tandem_${name})
+  set_target_properties(tandem_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(
+    tandem_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tandem>)
+  target_compile_features(tandem_${name} PUBLIC cxx_std_20)
+  tandem_target(tandem_${name})
+  set_property(GLOBAL APPEND PROPERTY TANDEM_LIBRARIES tandem_${name})
+endfunction()

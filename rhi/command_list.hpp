@@ -1,0 +1,64 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rhi/acceleration_structure.hpp"
+#include "rhi/bind_group.hpp"
+#include "rhi/buffer.hpp"
+#include "rhi/compute_pipeline.hpp"
+#include "rhi/query_pool.hpp"
+
+namespace tandem::rhi {
+
+/// One run of a compute shader: workgroup_count[0] * [1] * [2] workgroups of the shader's own size.
+struct DispatchDesc {
+  ComputePipelineHandle pipeline;
+  std::vector<BindGroupHandle> bind_groups;       ///< in any order, one for each set that the shader uses
+  std::span<const std::byte> push_constants = {};  ///< exactly the size that the shader declares; copied
+  std::array<std::uint32_t, 3> workgroup_count = {1, 1, 1};  ///< a zero makes the dispatch do nothing
+};
+
+/// Commands recorded to be submitted once. They take effect as if each began after the one before it had ended and its
+/// writes were visible: barriers are the backend's business. What a command names is kept alive until it has executed.
+class CommandList {
+ public:
+  virtual ~CommandList() = default;
+  CommandList(const CommandList&) = delete;
+  CommandList& operator=(const CommandList&) = delete;
+
+  const std::string& label() const noexcept { return label_; }
+
+  /// Copies `bytes` now and writes them into `buffer` at `offset` when the command executes.
+  virtual void upload(const BufferHandle& buffer, std::uint64_t offset, std::span<const std::byte> bytes) = 0;
+  /// Ranges of equal size that do not overlap.
+  virtual void copy(const BufferRange& source, const BufferRange& destination) = 0;
+  /// Writes the 32 bits of `value` over the range; offset and size are multiples of 4.
+  virtual void fill(const BufferRange& range, std::uint32_t value) = 0;
+
+  /// Builds from the desc that the structure was created from, or one with the same geometries, counts and formats over
+  /// other buffers.
+  virtual void build_bottom_level(const AccelerationStructureHandle& structure, const BottomLevelDesc& desc) = 0;
+  /// As build_bottom_level; instance_count may be smaller than at creation.
+  virtual void build_top_level(const AccelerationStructureHandle& structure, const TopLevelDesc& desc) = 0;
+
+  virtual void dispatch(const DispatchDesc& desc) = 0;
+
+  /// Writes the time at which all commands before this one have ended.
+  virtual void write_timestamp(const QueryPoolHandle& pool, std::uint32_t index) = 0;
+
+ protected:
+  explicit CommandList(std::string label) : label_(std::move(label)) {}
+
+ private:
+  std::string label_;
+};
+
+using CommandListHandle = std::shared_ptr<CommandList>;
+
+}  // namespace tandem::rhi

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "rhi/acceleration_structure.hpp"
+#include "rhi/bind_group.hpp"
+#include "rhi/buffer.hpp"
+#include "rhi/command_list.hpp"
+#include "rhi/compute_pipeline.hpp"
+#include "rhi/error.hpp"
+#include "rhi/fence.hpp"
+#include "rhi/message.hpp"
+#include "rhi/query_pool.hpp"
+#include "rhi/shader_module.hpp"
+
+namespace tandem::rhi {
+
+enum class DeviceKind { discrete_gpu, integrated_gpu, virtual_gpu, cpu };
+
+/// What a device can do beyond buffers and compute. Each is a bit of its own: real devices have one without the other.
+struct Capabilities {
+  bool ray_query = false;             ///< VK_KHR_ray_query
+  bool ray_tracing_pipeline = false;  ///< VK_KHR_ray_tracing_pipeline
+  bool position_fetch = false;        ///< VK_KHR_ray_tracing_position_fetch
+  bool aabb_geometry = false;         ///< AabbGeometry in a bottom level
+  bool scalar_block_layout = false;   ///< GL_EXT_scalar_block_layout
+  bool shader_int64 = false;
+  bool shader_float64 = false;
+  bool timestamps = false;  ///< QueryPool
+};
+
+struct Limits {
+  std::uint32_t max_push_constant_size = 128;
+  std::uint64_t max_storage_buffer_range = 1ull << 27;
+  std::uint64_t max_uniform_buffer_range = 16384;
+  std::uint64_t storage_buffer_offset_alignment = 1;
+  std::uint64_t uniform_buffer_offset_alignment = 1;
+  std::array<std::uint32_t, 3> max_workgroup_size = {128, 128, 64};
+  std::uint32_t max_workgroup_invocations = 128;
+  std::array<std::uint32_t, 3> max_workgroup_count = {65535, 65535, 65535};
+  std::uint32_t max_bind_groups = 4;
+  std::uint64_t max_geometry_count = 0;   ///< per bottom level
+  std::uint64_t max_primitive_count = 0;  ///< per bottom level
+  std::uint64_t max_instance_count = 0;   ///< per top level
+};
+
+/// What is known of a device before it is created, and what `tandem devices` prints.
+struct DeviceInfo {
+  std::string name;         ///< what create_device takes: "cpu", "vulkan:0"
+  std::string backend;      ///< "cpu", "vulkan"
+  std::string description;  ///< the hardware: "NVIDIA GeForce RTX 2070 SUPER", "llvmpipe (LLVM 19.1.7, 256 bits)"
+  std::string driver;       ///< name and version of what executes: "llvmpipe Mesa 25.0.7", "Embree 3.13.5"
+  std::string api;          ///< "Vulkan 1.4.305"; "" on the CPU
+  DeviceKind kind = DeviceKind::cpu;
+  Capabilities capabilities;
+  Limits limits;
+};
+
+struct DeviceDesc {
+  std::string name = "cpu";      ///< "cpu", "vulkan" (the first that qualifies), "vulkan:N"
+  bool driver_validation = false;  ///< Vulkan: the Khronos validation layer, an error when it is not installed
+  MessageCallback on_message;    ///< warnings, driver and validation messages
+  std::uint32_t thread_count = 0;  ///< CPU: worker threads, 0 for all that the machine has
+  std::filesystem::path kernel_cache;  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
+                                       ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem
+};
+
+/// A device and all that is made from it. Objects may be created from several threads at once; a command list is recorded
+/// by one thread at a time. Submissions execute in the order in which they are submitted. Objects keep the device's own
+/// state alive, so they may outlive the Device. Every create function throws Error; labels name the object in it.
+class Device {
+ public:
+  virtual ~Device() = default;
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const noexcept { return info_; }
+
+  virtual BufferHandle create_buffer(const BufferDesc& desc) = 0;
+  virtual AccelerationStructureHandle create_bottom_level(const BottomLevelDesc& desc) = 0;
+  virtual AccelerationStructureHandle create_top_level(const TopLevelDesc& desc) = 0;
+  virtual ShaderModuleHandle create_shader_module(const ShaderModuleDesc& desc) = 0;
+  virtual ComputePipelineHandle create_compute_pipeline(const ComputePipelineDesc& desc) = 0;
+  virtual BindGroupHandle create_bind_group(const BindGroupDesc& desc) = 0;
+  virtual QueryPoolHandle create_query_pool(const QueryPoolDesc& desc) = 0;
+  virtual CommandListHandle create_command_list(std::string label) = 0;
+
+  /// Executes the list once; submitting it again is an error. The CPU device has finished when this returns.
+  virtual FenceHandle submit(const CommandListHandle& list) = 0;
+  /// Waits until everything submitted has executed.
+  virtual void wait_idle() = 0;
+  /// Waits for everything submitted, then copies `bytes.size()` bytes of `buffer` from `offset` on.
+  virtual void download(const BufferHandle& buffer, std::uint64_t offset, std::span<std::byte> bytes) = 0;
+
+ protected:
+  explicit Device(DeviceInfo info) : info_(std::move(info)) {}
+
+ private:
+  DeviceInfo info_;
+};
+
+using DeviceHandle = std::shared_ptr<Device>;
+
+}  // namespace tandem::rhi

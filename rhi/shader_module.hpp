@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rhi/shader_reflection.hpp"
+
+namespace tandem::rhi {
+
+/// SPIR-V, the same words on every backend.
+struct ShaderModuleDesc {
+  std::span<const std::uint32_t> spirv;  ///< copied by create_shader_module
+  std::string label;
+};
+
+/// A SPIR-V module with one entry point, and what reflection says of it.
+class ShaderModule {
+ public:
+  virtual ~ShaderModule() = default;
+  ShaderModule(const ShaderModule&) = delete;
+  ShaderModule& operator=(const ShaderModule&) = delete;
+
+  const std::string& label() const noexcept { return label_; }
+  const ShaderReflection& reflection() const noexcept { return reflection_; }
+  std::span<const std::uint32_t> spirv() const noexcept { return spirv_; }
+
+ protected:
+  /// Copies the words and reflects them. Throws Error(invalid_argument) when they are no SPIR-V module.
+  explicit ShaderModule(const ShaderModuleDesc& desc)
+      : label_(desc.label), spirv_(desc.spirv.begin(), desc.spirv.end()), reflection_(reflect(spirv_, label_)) {}
+
+ private:
+  std::string label_;
+  std::vector<std::uint32_t> spirv_;
+  ShaderReflection reflection_;
+};
+
+using ShaderModuleHandle = std::shared_ptr<ShaderModule>;
+
+}  // namespace tandem::rhi

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace tandem::rhi {
+
+enum class ShaderStage { compute, ray_generation, any_hit, closest_hit, miss, intersection, callable };
+
+enum class BindingKind { uniform_buffer, storage_buffer, acceleration_structure, storage_image, sampled_image, sampler };
+
+/// One descriptor, or an array of them, that a shader declares and statically uses.
+struct ShaderBinding {
+  std::uint32_t set = 0;
+  std::uint32_t binding = 0;
+  std::uint32_t count = 1;  ///< array length
+  BindingKind kind = BindingKind::storage_buffer;
+  bool writable = false;  ///< a storage buffer or image without NonWritable
+  std::string name;
+};
+
+/// A specialisation constant that has a SpecId.
+struct SpecializationConstant {
+  std::uint32_t id = 0;             ///< layout(constant_id = id)
+  std::uint32_t default_value = 0;  ///< the bits; bool: 0 or 1
+  std::string name;
+};
+
+/// What a pipeline has to know about a module. Bindings are sorted by (set, binding).
+struct ShaderReflection {
+  ShaderStage stage = ShaderStage::compute;
+  std::string entry_point;
+  std::array<std::uint32_t, 3> workgroup_size = {1, 1, 1};  ///< before specialisation; compute only
+  std::uint32_t push_constant_size = 0;                     ///< bytes, 0 without a push constant block
+  std::vector<ShaderBinding> bindings;
+  std::vector<SpecializationConstant> specialization_constants;
+};
+
+/// Reads the words with SPIRV-Cross. Throws Error(invalid_argument) when they are no SPIR-V module or hold not exactly
+/// one entry point, Error(unsupported) for a stage or a resource that is not listed above; both name `label`.
+ShaderReflection reflect(std::span<const std::uint32_t> spirv, std::string_view label);
+
+}  // namespace tandem::rhi

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "rhi/device.hpp"
+
+/// The rules of the interface, written once. Every backend calls these first, so that a broken rule is the same
+/// Error(invalid_argument or unsupported), with the object's label, on every device.
+namespace tandem::rhi::validation {
+
+void check(const BufferDesc& desc);
+void check(const BottomLevelDesc& desc, const DeviceInfo& device);
+void check(const TopLevelDesc& desc, const DeviceInfo& device);
+void check(const ComputePipelineDesc& desc, const DeviceInfo& device);
+void check(const BindGroupDesc& desc, const DeviceInfo& device);
+void check(const QueryPoolDesc& desc);
+void check(const DispatchDesc& desc, const DeviceInfo& device);
+/// Commands of a list: `list` is named in the error.
+void check_upload(const CommandList& list, const BufferHandle& buffer, std::uint64_t offset, std::uint64_t size);
+void check_copy(const CommandList& list, const BufferRange& source, const BufferRange& destination);
+void check_fill(const CommandList& list, const BufferRange& range);
+void check_build(const CommandList& list, const AccelerationStructureHandle& structure,
+                 const BottomLevelDesc& created_from, const BottomLevelDesc& desc);
+void check_build(const CommandList& list, const AccelerationStructureHandle& structure, const TopLevelDesc& created_from,
+                 const TopLevelDesc& desc);
+void check_timestamp(const CommandList& list, const QueryPoolHandle& pool, std::uint32_t index);
+void check_download(const BufferHandle& buffer, std::uint64_t offset, std::uint64_t size);
+
+}  // namespace tandem::rhi::validation

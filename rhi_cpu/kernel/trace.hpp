@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+
+/// How a translated shader traces rays: through plain data and a table of functions, so that a kernel neither links nor
+/// knows what is behind it (Embree, or the exact tracer).
+namespace tandem::kernel {
+
+/// Vulkan ray flags (SPIR-V RayFlags), the values that rayQueryInitializeEXT takes.
+enum RayFlag : std::uint32_t {
+  ray_flag_opaque = 0x01,
+  ray_flag_no_opaque = 0x02,
+  ray_flag_terminate_on_first_hit = 0x04,
+  ray_flag_skip_closest_hit_shader = 0x08,
+  ray_flag_cull_back_facing_triangles = 0x10,
+  ray_flag_cull_front_facing_triangles = 0x20,
+  ray_flag_cull_opaque = 0x40,
+  ray_flag_cull_no_opaque = 0x80,
+  ray_flag_skip_triangles = 0x100,
+  ray_flag_skip_aabbs = 0x200
+};
+
+/// A ray in world space, as rayQueryInitializeEXT receives it.
+struct Ray {
+  float origin[3];
+  float t_min;
+  float direction[3];  ///< not normalised: t counts in its lengths
+  float t_max;
+  std::uint32_t flags;
+  std::uint32_t mask;  ///< 8 bits
+};
+
+/// A triangle that a ray meets.
+struct Hit {
+  float t;
+  float barycentrics[2];         ///< weights of the second and third vertex
+  std::uint32_t instance_index;  ///< position in the top level's instance buffer: gl_InstanceID
+  std::uint32_t geometry_index;
+  std::uint32_t primitive_index;
+  bool front_face;
+  bool opaque;  ///< after geometry, instance and ray flags
+};
+
+/// What the getters of a hit need of its instance.
+struct Instance {
+  float object_to_world[3][4];  ///< row-major
+  float world_to_object[3][4];
+  std::uint32_t custom_index;
+  std::uint32_t sbt_offset;
+};
+
+struct TopLevel;
+
+/// The end of what a candidate search has already seen, in the total order (t, instance, geometry, primitive).
+struct CandidateCursor {
+  bool started = false;
+  Hit last = {};
+};
+
+struct TraceFunctions {
+  /// The closest opaque hit in [t_min, t_max]; only for rays that can meet no candidate (has_candidates is false).
+  bool (*closest_opaque)(const TopLevel& scene, const Ray& ray, Hit& hit);
+  /// Whether any opaque triangle lies in [t_min, t_max]; same condition.
+  bool (*occluded_opaque)(const TopLevel& scene, const Ray& ray);
+  /// The first hit after `cursor` in the total order with t at most ray.t_max, opaque or not; moves the cursor to it.
+  bool (*next_hit)(const TopLevel& scene, const Ray& ray, CandidateCursor& cursor, Hit& hit);
+};
+
+/// A built top level as a kernel sees it; the backend derives its own from it. An acceleration structure's Resource
+/// points at one.
+struct TopLevel {
+  const TraceFunctions* functions;
+  const Instance* instances;
+  std::uint32_t instance_count;
+  bool all_opaque;      ///< no geometry or instance makes a candidate unless the ray forces it
+  bool all_non_opaque;  ///< everything makes a candidate unless the ray forces it
+};
+
+}  // namespace tandem::kernel
