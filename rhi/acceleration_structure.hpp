@@ -70,7 +70,8 @@ enum class InstanceFlags : std::uint32_t {
 template <>
 inline constexpr bool is_flags<InstanceFlags> = true;
 
-/// What to build a bottom level from. Building reads the buffers when the command executes; afterwards they are not needed.
+/// What to build a bottom level from. Building reads the buffers when the command executes; afterwards they are not
+/// needed.
 struct BottomLevelDesc {
   std::vector<Geometry> geometries;  ///< all triangles or all boxes
   std::string label;

@@ -19,8 +19,8 @@ namespace tandem::rhi {
 /// One run of a compute shader: workgroup_count[0] * [1] * [2] workgroups of the shader's own size.
 struct DispatchDesc {
   ComputePipelineHandle pipeline;
-  std::vector<BindGroupHandle> bind_groups;       ///< in any order, one for each set that the shader uses
-  std::span<const std::byte> push_constants = {};  ///< exactly the size that the shader declares; copied
+  std::vector<BindGroupHandle> bind_groups;                  ///< in any order, one for each set that the shader uses
+  std::span<const std::byte> push_constants = {};            ///< exactly the size that the shader declares; copied
   std::array<std::uint32_t, 3> workgroup_count = {1, 1, 1};  ///< a zero makes the dispatch do nothing
 };
 

@@ -11,7 +11,14 @@ namespace tandem::rhi {
 
 enum class ShaderStage { compute, ray_generation, any_hit, closest_hit, miss, intersection, callable };
 
-enum class BindingKind { uniform_buffer, storage_buffer, acceleration_structure, storage_image, sampled_image, sampler };
+enum class BindingKind {
+  uniform_buffer,
+  storage_buffer,
+  acceleration_structure,
+  storage_image,
+  sampled_image,
+  sampler
+};
 
 /// One descriptor, or an array of them, that a shader declares and statically uses.
 struct ShaderBinding {

@@ -22,8 +22,8 @@ void check_copy(const CommandList& list, const BufferRange& source, const Buffer
 void check_fill(const CommandList& list, const BufferRange& range);
 void check_build(const CommandList& list, const AccelerationStructureHandle& structure,
                  const BottomLevelDesc& created_from, const BottomLevelDesc& desc);
-void check_build(const CommandList& list, const AccelerationStructureHandle& structure, const TopLevelDesc& created_from,
-                 const TopLevelDesc& desc);
+void check_build(const CommandList& list, const AccelerationStructureHandle& structure,
+                 const TopLevelDesc& created_from, const TopLevelDesc& desc);
 void check_timestamp(const CommandList& list, const QueryPoolHandle& pool, std::uint32_t index);
 void check_download(const BufferHandle& buffer, std::uint64_t offset, std::uint64_t size);
 

@@ -1,0 +1,166 @@
+#include "rhi/shader_reflection.hpp"
+
+#include <algorithm>
+#include <exception>
+#include <tuple>
+
+#include <spirv_cross/spirv_cross.hpp>
+
+#include "rhi/error.hpp"
+
+namespace tandem::rhi {
+namespace {
+
+constexpr std::uint32_t spirv_magic = 0x07230203;
+constexpr std::size_t spirv_header_words = 5;
+
+ShaderStage stage_of(spv::ExecutionModel model, std::string_view label) {
+  switch (model) {
+    case spv::ExecutionModelGLCompute:
+      return ShaderStage::compute;
+    case spv::ExecutionModelRayGenerationKHR:
+      return ShaderStage::ray_generation;
+    case spv::ExecutionModelAnyHitKHR:
+      return ShaderStage::any_hit;
+    case spv::ExecutionModelClosestHitKHR:
+      return ShaderStage::closest_hit;
+    case spv::ExecutionModelMissKHR:
+      return ShaderStage::miss;
+    case spv::ExecutionModelIntersectionKHR:
+      return ShaderStage::intersection;
+    case spv::ExecutionModelCallableKHR:
+      return ShaderStage::callable;
+    default:
+      throw Error(ErrorCode::unsupported, label,
+                  "the SPIR-V entry point has execution model " + std::to_string(model) +
+                      ", which is neither compute nor a ray tracing stage");
+  }
+}
+
+class Reflector {
+ public:
+  Reflector(std::span<const std::uint32_t> spirv, std::string_view label)
+      : compiler_(spirv.data(), spirv.size()), label_(label) {}
+
+  ShaderReflection reflect() {
+    const auto entry_points = compiler_.get_entry_points_and_stages();
+    if (entry_points.size() != 1)
+      throw Error(ErrorCode::invalid_argument, label_,
+                  "the SPIR-V module must have exactly one entry point, not " + std::to_string(entry_points.size()));
+    result_.entry_point = entry_points[0].name;
+    result_.stage = stage_of(entry_points[0].execution_model, label_);
+    compiler_.set_enabled_interface_variables(compiler_.get_active_interface_variables());
+
+    const spirv_cross::ShaderResources resources = compiler_.get_shader_resources();
+    refuse(resources.subpass_inputs, "a subpass input");
+    refuse(resources.atomic_counters, "an atomic counter");
+    add(resources.uniform_buffers, BindingKind::uniform_buffer);
+    add(resources.storage_buffers, BindingKind::storage_buffer);
+    add(resources.acceleration_structures, BindingKind::acceleration_structure);
+    add(resources.storage_images, BindingKind::storage_image);
+    add(resources.sampled_images, BindingKind::sampled_image);
+    add(resources.separate_images, BindingKind::sampled_image);
+    add(resources.separate_samplers, BindingKind::sampler);
+    std::sort(result_.bindings.begin(), result_.bindings.end(), [](const ShaderBinding& a, const ShaderBinding& b) {
+      return std::tie(a.set, a.binding) < std::tie(b.set, b.binding);
+    });
+    for (std::size_t i = 1; i < result_.bindings.size(); ++i)
+      refuse_alias(result_.bindings[i - 1], result_.bindings[i]);
+
+    for (const spirv_cross::Resource& block : resources.push_constant_buffers)
+      result_.push_constant_size =
+          static_cast<std::uint32_t>(compiler_.get_declared_struct_size(compiler_.get_type(block.base_type_id)));
+    add_specialization_constants();
+    if (result_.stage == ShaderStage::compute) add_workgroup_size();
+    return std::move(result_);
+  }
+
+ private:
+  void refuse(const spirv_cross::SmallVector<spirv_cross::Resource>& resources, const char* what) const {
+    if (!resources.empty())
+      throw Error(ErrorCode::unsupported, label_,
+                  std::string("the shader declares ") + what + ", " + resources[0].name);
+  }
+
+  void refuse_alias(const ShaderBinding& a, const ShaderBinding& b) const {
+    if (a.set == b.set && a.binding == b.binding)
+      throw Error(ErrorCode::unsupported, label_,
+                  "two variables share set " + std::to_string(a.set) + " binding " + std::to_string(a.binding) + ": " +
+                      a.name + " and " + b.name);
+  }
+
+  void add(const spirv_cross::SmallVector<spirv_cross::Resource>& resources, BindingKind kind) {
+    for (const spirv_cross::Resource& resource : resources) {
+      ShaderBinding binding;
+      binding.name = resource.name;
+      binding.kind = kind;
+      binding.set = compiler_.get_decoration(resource.id, spv::DecorationDescriptorSet);
+      binding.binding = compiler_.get_decoration(resource.id, spv::DecorationBinding);
+      binding.count = descriptor_count(resource);
+      if (kind == BindingKind::storage_buffer)
+        binding.writable = !compiler_.get_buffer_block_flags(resource.id).get(spv::DecorationNonWritable);
+      if (kind == BindingKind::storage_image)
+        binding.writable = !compiler_.has_decoration(resource.id, spv::DecorationNonWritable);
+      result_.bindings.push_back(std::move(binding));
+    }
+  }
+
+  std::uint32_t descriptor_count(const spirv_cross::Resource& resource) const {
+    const spirv_cross::SPIRType& type = compiler_.get_type(resource.type_id);
+    std::uint32_t count = 1;
+    for (std::size_t i = 0; i < type.array.size(); ++i) {
+      const std::uint32_t length = type.array_size_literal[i] ? type.array[i] : constant_value(type.array[i]);
+      if (length == 0)
+        throw Error(ErrorCode::unsupported, label_,
+                    "the shader declares " + resource.name + " as an array of descriptors without a length");
+      count *= length;
+    }
+    return count;
+  }
+
+  std::uint32_t constant_value(std::uint32_t id) const { return compiler_.get_constant(id).scalar(); }
+
+  void add_specialization_constants() {
+    for (const spirv_cross::SpecializationConstant& constant : compiler_.get_specialization_constants()) {
+      const spirv_cross::SPIRConstant& value = compiler_.get_constant(constant.id);
+      if (compiler_.get_type(value.constant_type).width > 32)
+        throw Error(ErrorCode::unsupported, label_,
+                    "specialisation constant " + std::to_string(constant.constant_id) + " is wider than 32 bits");
+      result_.specialization_constants.push_back(
+          {constant.constant_id, value.scalar(), compiler_.get_name(constant.id)});
+    }
+    std::sort(result_.specialization_constants.begin(), result_.specialization_constants.end(),
+              [](const SpecializationConstant& a, const SpecializationConstant& b) { return a.id < b.id; });
+  }
+
+  void add_workgroup_size() {
+    spirv_cross::SpecializationConstant x, y, z;
+    compiler_.get_work_group_size_specialization_constants(x, y, z);
+    const spirv_cross::SpecializationConstant* specialized[3] = {&x, &y, &z};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const auto id = static_cast<std::uint32_t>(specialized[i]->id);
+      result_.workgroup_size[i] =
+          id != 0 ? constant_value(id) : compiler_.get_execution_mode_argument(spv::ExecutionModeLocalSize, i);
+    }
+  }
+
+  spirv_cross::Compiler compiler_;
+  std::string_view label_;
+  ShaderReflection result_;
+};
+
+}  // namespace
+
+ShaderReflection reflect(std::span<const std::uint32_t> spirv, std::string_view label) {
+  if (spirv.size() < spirv_header_words || spirv[0] != spirv_magic)
+    throw Error(ErrorCode::invalid_argument, label, "the shader is not SPIR-V: its first word is not the magic number");
+  try {
+    return Reflector(spirv, label).reflect();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::invalid_argument, label, std::string("the SPIR-V cannot be parsed: ") + error.what());
+  }
+}
+
+}  // namespace tandem::rhi
