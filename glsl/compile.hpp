@@ -12,7 +12,8 @@
 namespace tandem::glsl {
 
 struct CompileOptions {
-  std::vector<std::filesystem::path> include_directories;  ///< searched for #include "..." after the source's own folder
+  std::vector<std::filesystem::path>
+      include_directories;  ///< searched for #include "..." after the source's own folder
   bool debug_info = false;  ///< keep names and line numbers, so that the CPU device can point a debugger at the GLSL
 };
 

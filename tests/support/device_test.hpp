@@ -15,7 +15,8 @@ const std::vector<std::string>& device_names();
 /// The device of that name, created at the first call with driver validation on, and kept for the rest of the run.
 rhi::DeviceHandle device(const std::string& name);
 
-/// What the validation layers have said of the device since the last call; a test that runs on a device must leave it empty.
+/// What the validation layers have said of the device since the last call; a test that runs on a device must leave it
+/// empty.
 std::vector<std::string> take_warnings(const std::string& name);
 
 /// Compiles GLSL and makes a compute pipeline of it.
@@ -34,17 +35,16 @@ std::vector<T> contents(rhi::Device& device, const rhi::BufferHandle& buffer, st
 
 /// TANDEM_DEVICE_TEST("what must be true") { ... `device` is an rhi::Device& ... }
 /// One doctest case with a subcase per device; fails on any validation message.
-#define TANDEM_DEVICE_TEST_IMPLEMENTATION(name, function)                              \
-  static void function(::tandem::rhi::Device& device);                                 \
-  TEST_CASE(name) {                                                                    \
-    for (const std::string& device_name : ::tandem::test::device_names()) {            \
-      SUBCASE(device_name.c_str()) {                                                   \
-        function(*::tandem::test::device(device_name));                                \
-        for (const std::string& warning : ::tandem::test::take_warnings(device_name)) \
-          FAIL_CHECK(warning);                                                         \
-      }                                                                                \
-    }                                                                                  \
-  }                                                                                    \
+#define TANDEM_DEVICE_TEST_IMPLEMENTATION(name, function)                                                  \
+  static void function(::tandem::rhi::Device& device);                                                     \
+  TEST_CASE(name) {                                                                                        \
+    for (const std::string& device_name : ::tandem::test::device_names()) {                                \
+      SUBCASE(device_name.c_str()) {                                                                       \
+        function(*::tandem::test::device(device_name));                                                    \
+        for (const std::string& warning : ::tandem::test::take_warnings(device_name)) FAIL_CHECK(warning); \
+      }                                                                                                    \
+    }                                                                                                      \
+  }                                                                                                        \
   static void function([[maybe_unused]] ::tandem::rhi::Device& device)
 #define TANDEM_DEVICE_TEST(name) TANDEM_DEVICE_TEST_IMPLEMENTATION(name, DOCTEST_ANONYMOUS(tandem_device_test_))
 

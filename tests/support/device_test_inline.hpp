@@ -8,11 +8,11 @@ template <typename T>
 rhi::BufferHandle buffer_of(rhi::Device& device, const std::vector<T>& values, const std::string& label) {
   using rhi::BufferUsage;
   const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
-  rhi::BufferHandle buffer = device.create_buffer({.size = bytes.size(),
-                                                   .usage = BufferUsage::storage | BufferUsage::uniform |
-                                                            BufferUsage::acceleration_structure_input |
-                                                            BufferUsage::device_address,
-                                                   .label = label});
+  rhi::BufferHandle buffer =
+      device.create_buffer({.size = bytes.size(),
+                            .usage = BufferUsage::storage | BufferUsage::uniform |
+                                     BufferUsage::acceleration_structure_input | BufferUsage::device_address,
+                            .label = label});
   rhi::CommandListHandle list = device.create_command_list("upload " + label);
   list->upload(buffer, 0, bytes);
   device.submit(list)->wait();
