@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "pathtracer/image.hpp"
+
+namespace tandem::pathtracer {
+
+/// What a picture says of itself: "scene", "device", "samples", ... and their values. Stored in the file as strings
+/// named "tandem:<key>".
+using ImageMetadata = std::map<std::string, std::string>;
+
+/// Throws Error, naming the file, unless write_image could write there now: the extension must be .exr or .png, the
+/// folder must exist and take a new file, and the path must not be a folder. To be called before a long rendering.
+void check_image_path(const std::filesystem::path& path);
+
+/// Writes 32-bit float OpenEXR, or PNG of 8 bits, sRGB-encoded and clamped (NaN becomes black). The file appears whole,
+/// replacing an older one, or not at all. Throws Error.
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata);
+
+/// The pixels, PNG decoded to linear, and the metadata that write_image stored when `metadata` is given. Throws Error.
+Image read_image(const std::filesystem::path& path, ImageMetadata* metadata = nullptr);
+
+}  // namespace tandem::pathtracer

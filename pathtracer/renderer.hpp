@@ -1,0 +1,110 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pathtracer/camera.hpp"
+#include "pathtracer/image.hpp"
+#include "pathtracer/image_io.hpp"
+#include "pathtracer/lights.hpp"
+#include "pathtracer/scene.hpp"
+#include "rhi/device.hpp"
+
+namespace tandem::pathtracer {
+
+struct RenderSettings {
+  std::uint32_t width = 512;
+  std::uint32_t height = 512;
+  std::uint32_t max_depth = 8;  ///< path segments from the camera on: 1 sees emission only, 2 adds direct light
+  std::uint32_t seed = 0;
+  std::optional<Camera> camera;         ///< absent: automatic_camera, or the one in use when restarting
+  std::optional<glm::vec3> background;  ///< radiance of rays that leave the scene; absent: 0, or 1 when nothing emits
+
+  /// Seconds that one submission should take at most; it may take several times as long where the scene is uneven.
+  double submission_seconds = 0.25;
+  /// Side of the largest tile of one submission in pixels, 0 for no bound. It never changes the picture.
+  std::uint32_t maximum_tile = 0;
+};
+
+/// Throws Error for a size or depth of 0 or one that no device can take; a camera is checked when it is used.
+void check(const RenderSettings& settings);
+
+/// Called between submissions with the finished fraction of the call, in [0, 1]; false cancels.
+using Progress = std::function<bool(double fraction)>;
+
+/// A scene on a device, and the picture of it that accumulates there.
+///
+/// A pixel is the sum of its samples 0, 1, 2, ... in that order, so the result depends neither on tiles nor on how
+/// samples are spread over calls: render(16) and 16 times render(1) agree to the last bit.
+class Renderer {
+ public:
+  /// Uploads the scene and builds its acceleration structures. Throws Error for bad settings, rhi::Error for what the
+  /// device refuses (no ray queries, a scene or picture that is too large).
+  Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings);
+
+  /// Adds `samples` to every pixel. False when `progress` cancelled: the picture is then empty again.
+  bool render(std::uint32_t samples, const Progress& progress = {});
+
+  /// Empties the picture and renders with other settings from now on.
+  void restart(const RenderSettings& settings);
+
+  /// The mean of the samples; black before the first.
+  Image image() const;
+  std::uint32_t samples() const noexcept { return samples_; }
+  /// Rays traced for the samples of the picture, counted by the shader.
+  std::uint64_t ray_count() const noexcept { return ray_count_; }
+  /// Time that the dispatches took: by the device's timestamps where it has them, else by the host's clock.
+  double device_milliseconds() const noexcept { return device_milliseconds_; }
+  /// Time that building the acceleration structures took, likewise.
+  double build_milliseconds() const noexcept { return build_milliseconds_; }
+
+  const RenderSettings& settings() const noexcept { return settings_; }
+  const Camera& camera() const noexcept { return camera_; }                        ///< the one in use
+  glm::vec3 background() const noexcept { return background_; }                    ///< the one in use
+  const std::vector<std::string>& warnings() const noexcept { return warnings_; }  ///< choices the user may not expect
+  /// scene, triangles, device, driver, size, samples, depth, seed, camera, background, rays, milliseconds, version.
+  ImageMetadata metadata() const;
+
+ private:
+  struct Tile {
+    glm::uvec2 offset;
+    glm::uvec2 size;
+  };
+
+  void upload(const Scene& scene);
+  void build();
+  /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
+  double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
+  double dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
+  void clear_picture();
+  void collect_ray_counts();
+
+  rhi::DeviceHandle device_;
+  std::string scene_name_;
+  std::uint32_t vertex_count_ = 0;
+  std::uint32_t triangle_count_ = 0;
+  std::uint32_t light_count_ = 0;
+  RenderSettings settings_;
+  Camera camera_;
+  glm::vec3 background_{0};
+  std::vector<std::string> warnings_;
+
+  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_, instances_;
+  rhi::AccelerationStructureHandle bottom_level_, top_level_;
+  rhi::ComputePipelineHandle pipeline_;
+  rhi::BindGroupHandle scene_group_, picture_group_;
+  rhi::BufferHandle radiance_sum_, ray_counts_;
+  rhi::QueryPoolHandle timestamps_;
+
+  RenderConstants constants_{};
+  std::uint32_t samples_ = 0;
+  std::uint64_t ray_count_ = 0;
+  double device_milliseconds_ = 0;
+  double build_milliseconds_ = 0;
+  double pixel_samples_per_second_ = 0;  ///< measured; 0 before the first dispatch
+};
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,38 @@
+#include "pathtracer/scene.hpp"
+
+#include <limits>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+namespace tandem::pathtracer {
+
+Bounds bounds(const Scene& scene) {
+  Bounds box{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(std::numeric_limits<float>::lowest())};
+  for (const GpuTriangle& triangle : scene.triangles)
+    for (const std::uint32_t vertex : triangle.vertices) {
+      box.minimum = glm::min(box.minimum, scene.positions[vertex]);
+      box.maximum = glm::max(box.maximum, scene.positions[vertex]);
+    }
+  return box;
+}
+
+double triangle_area(const Scene& scene, const GpuTriangle& triangle) {
+  const glm::dvec3 a(scene.positions[triangle.vertices[0]]);
+  const glm::dvec3 b(scene.positions[triangle.vertices[1]]);
+  const glm::dvec3 c(scene.positions[triangle.vertices[2]]);
+  return 0.5 * glm::length(glm::cross(b - a, c - a));
+}
+
+GpuMaterial diffuse_material(glm::vec3 albedo, glm::vec3 emission) {
+  return {.base_color = albedo,
+          .model = MaterialModel::diffuse,
+          .emission = emission,
+          .ior = 1,
+          .reflectance = glm::vec3(0),
+          .padding0 = 0,
+          .transmittance = glm::vec3(1),
+          .padding1 = 0};
+}
+
+}  // namespace tandem::pathtracer
