@@ -20,7 +20,8 @@ enum RayFlag : std::uint32_t {
   ray_flag_skip_aabbs = 0x200
 };
 
-/// A ray in world space, as rayQueryInitializeEXT receives it.
+/// A ray in world space, as rayQueryInitializeEXT receives it. A triangle is hit at t_min < t < t_max, both ends
+/// excluded (Vulkan specification, "Ray Intersection Candidate Determination").
 struct Ray {
   float origin[3];
   float t_min;
@@ -51,19 +52,15 @@ struct Instance {
 
 struct TopLevel;
 
-/// The end of what a candidate search has already seen, in the total order (t, instance, geometry, primitive).
-struct CandidateCursor {
-  bool started = false;
-  Hit last = {};
-};
-
+/// All of them leave out what the ray's mask and flags cull, expect a ray with t_min < t_max, and are thread-safe.
 struct TraceFunctions {
-  /// The closest opaque hit in [t_min, t_max]; only for rays that can meet no candidate (has_candidates is false).
-  bool (*closest_opaque)(const TopLevel& scene, const Ray& ray, Hit& hit);
-  /// Whether any opaque triangle lies in [t_min, t_max]; same condition.
-  bool (*occluded_opaque)(const TopLevel& scene, const Ray& ray);
-  /// The first hit after `cursor` in the total order with t at most ray.t_max, opaque or not; moves the cursor to it.
-  bool (*next_hit)(const TopLevel& scene, const Ray& ray, CandidateCursor& cursor, Hit& hit);
+  /// The closest hit, opaque or not.
+  bool (*closest)(const TopLevel& scene, const Ray& ray, Hit& hit);
+  /// Whether there is any hit, opaque or not.
+  bool (*occluded)(const TopLevel& scene, const Ray& ray);
+  /// The first hit after `previous`, or the first of all when it is null, in the total order (t, instance, geometry,
+  /// primitive), opaque or not. Repeated, it enumerates every hit of the ray exactly once, also those of equal t.
+  bool (*next_hit)(const TopLevel& scene, const Ray& ray, const Hit* previous, Hit& hit);
 };
 
 /// A built top level as a kernel sees it; the backend derives its own from it. An acceleration structure's Resource
@@ -72,8 +69,7 @@ struct TopLevel {
   const TraceFunctions* functions;
   const Instance* instances;
   std::uint32_t instance_count;
-  bool all_opaque;      ///< no geometry or instance makes a candidate unless the ray forces it
-  bool all_non_opaque;  ///< everything makes a candidate unless the ray forces it
+  bool all_opaque;  ///< no hit is a candidate unless the ray has ray_flag_no_opaque
 };
 
 }  // namespace tandem::kernel

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "rhi/acceleration_structure.hpp"
+#include "rhi_cpu/kernel/trace.hpp"
+#include "rhi_cpu/trace/embree_device.hpp"
+
+/// Acceleration structures over Embree, built from host memory. They copy what they need and keep no pointer to it.
+namespace tandem::cpu {
+
+/// Triangles of one geometry in host memory; see rhi::TriangleGeometry. A triangle with a vertex that is not finite, or
+/// of no area, is inactive: it keeps its index and is never hit. So is one with a coordinate beyond 1.8e18, Embree's
+/// range.
+struct TriangleInput {
+  std::span<const std::byte> vertices;  ///< vertex_count positions of three floats, `vertex_stride` bytes apart
+  std::uint32_t vertex_count = 0;
+  std::uint32_t vertex_stride = 12;
+  std::span<const std::byte>
+      indices;  ///< tightly packed; empty with IndexFormat::none: consecutive triples of vertices
+  rhi::IndexFormat index_format = rhi::IndexFormat::none;
+  std::uint32_t triangle_count = 0;
+  std::optional<std::array<float, 12>> transform;  ///< row-major 3x4, applied to the positions now
+  rhi::GeometryFlags flags = rhi::GeometryFlags::opaque;
+};
+
+struct BottomLevelScene;
+struct TopLevelScene;
+
+/// Geometries that instances refer to.
+class BottomLevel {
+ public:
+  /// Throws rhi::Error, in the name of `label`, for spans shorter than the counts say, for an index that is not below
+  /// vertex_count, and when memory runs out.
+  static BottomLevel build(const EmbreeDevice& device, std::span<const TriangleInput> geometries,
+                           std::string_view label);
+
+  const std::shared_ptr<const BottomLevelScene>& scene() const noexcept { return scene_; }
+
+ private:
+  explicit BottomLevel(std::shared_ptr<const BottomLevelScene> scene);
+
+  std::shared_ptr<const BottomLevelScene> scene_;
+};
+
+/// The built bottom level at an InstanceDesc::blas_address, or null when there is none. Called during the build only.
+using BottomLevelLookup = std::function<const BottomLevel*(std::uint64_t blas_address)>;
+
+/// Instances of bottom levels, which it keeps alive as they were when it was built. An instance is inactive when its
+/// blas_address is 0 or its transform is not finite or cannot be inverted.
+class TopLevel {
+ public:
+  /// Throws rhi::Error, in the name of `label`, for an address that `lookup` does not know, and when memory runs out.
+  static TopLevel build(const EmbreeDevice& device, std::span<const rhi::InstanceDesc> instances,
+                        const BottomLevelLookup& lookup, std::string_view label);
+
+  ~TopLevel();
+  TopLevel(TopLevel&&) noexcept;
+  TopLevel& operator=(TopLevel&&) noexcept;
+
+  /// What a kernel traces: the `data` of its Resource. The address stays the same for the life of this structure, also
+  /// when it is moved.
+  const kernel::TopLevel& view() const noexcept;
+
+ private:
+  explicit TopLevel(std::unique_ptr<TopLevelScene> scene);
+
+  std::unique_ptr<TopLevelScene> scene_;
+};
+
+}  // namespace tandem::cpu
