@@ -39,7 +39,7 @@ struct Hit {
   std::uint32_t geometry_index;
   std::uint32_t primitive_index;
   bool front_face;
-  bool opaque;  ///< after geometry, instance and ray flags
+  bool opaque;  ///< commits without the shader's confirmation; `closest` and `occluded` treat every hit so
 };
 
 /// What the getters of a hit need of its instance.
@@ -54,7 +54,7 @@ struct TopLevel;
 
 /// All of them leave out what the ray's mask and flags cull, expect a ray with t_min < t_max, and are thread-safe.
 struct TraceFunctions {
-  /// The closest hit, opaque or not.
+  /// The closest hit, opaque or not; it counts as opaque.
   bool (*closest)(const TopLevel& scene, const Ray& ray, Hit& hit);
   /// Whether there is any hit, opaque or not.
   bool (*occluded)(const TopLevel& scene, const Ray& ray);

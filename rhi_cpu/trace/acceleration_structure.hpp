@@ -20,14 +20,14 @@ namespace tandem::cpu {
 /// of no area, is inactive: it keeps its index and is never hit. So is one with a coordinate beyond 1.8e18, Embree's
 /// range.
 struct TriangleInput {
-  std::span<const std::byte> vertices;  ///< vertex_count positions of three floats, `vertex_stride` bytes apart
+  std::span<const std::byte> vertices = {};  ///< vertex_count positions of three floats, `vertex_stride` bytes apart
   std::uint32_t vertex_count = 0;
   std::uint32_t vertex_stride = 12;
   std::span<const std::byte>
       indices;  ///< tightly packed; empty with IndexFormat::none: consecutive triples of vertices
   rhi::IndexFormat index_format = rhi::IndexFormat::none;
   std::uint32_t triangle_count = 0;
-  std::optional<std::array<float, 12>> transform;  ///< row-major 3x4, applied to the positions now
+  std::optional<std::array<float, 12>> transform = {};  ///< row-major 3x4, applied to the positions now
   rhi::GeometryFlags flags = rhi::GeometryFlags::opaque;
 };
 
