@@ -1,0 +1,46 @@
+// Random numbers without state: each is a hash of (pixel, sample, dimension, seed), so a number depends on nothing but
+// what it is for. Four at a time by pcg4d (Jarzynski and Olano, Hash Functions for GPU Rendering, JCGT 9(3), 2020).
+
+#ifndef TANDEM_RANDOM
+#define TANDEM_RANDOM
+
+/// What all random numbers of one path have in common.
+struct RandomKey {
+  uint pixel;  // x + y * 2^16
+  uint sample_index;
+  uint seed;
+};
+
+// The dimensions of a path: one for the camera, then two for each vertex. Each holds four numbers.
+const uint DIMENSION_CAMERA = 0;
+
+/// Of the vertex at the end of path segment `depth` (0: the camera ray): the scattered direction (x, y, z) and roulette
+/// (w).
+uint scattering_dimension(uint depth) { return 1 + 2 * depth; }
+
+/// Of the same vertex: the choice of a light (x, y) and of a point on it (z, w).
+uint light_dimension(uint depth) { return 2 + 2 * depth; }
+
+uvec4 pcg4d(uvec4 v) {
+  v = v * 1664525u + 1013904223u;
+  v.x += v.y * v.w;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v.w += v.y * v.z;
+  v ^= v >> 16u;
+  v.x += v.y * v.w;
+  v.y += v.z * v.x;
+  v.z += v.x * v.y;
+  v.w += v.y * v.z;
+  return v;
+}
+
+/// Four times 32 uniform bits.
+uvec4 random_bits(RandomKey key, uint dimension) {
+  return pcg4d(uvec4(key.pixel, key.sample_index, dimension, key.seed));
+}
+
+/// The upper 24 bits as a multiple of 2^-24 in [0, 1): exact, and never 1.
+precise float unit_interval(uint bits) { return float(bits >> 8) * 5.96046448e-08; }
+
+#endif
