@@ -17,6 +17,9 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code status_error;
   if (path_.filename().empty() || std::filesystem::is_directory(path_, status_error))
     throw Error(fmt::format("cannot write '{}': it is a folder", path_.string()));
+  // A device such as /dev/null would be replaced by a file.
+  if (std::filesystem::exists(path_, status_error) && !std::filesystem::is_regular_file(path_, status_error))
+    throw Error(fmt::format("cannot write '{}': it is not a regular file", path_.string()));
   std::filesystem::path folder = path_.parent_path();
   if (folder.empty()) folder = ".";
   if (!std::filesystem::is_directory(folder, status_error))
