@@ -1,0 +1,87 @@
+#include "tools/bench_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "tools/device_json.hpp"
+#include "tools/rendering.hpp"
+#include "tools/spread.hpp"
+
+namespace tandem::tools {
+namespace {
+
+double camera_paths(const RenderOptions& options) {
+  return static_cast<double>(options.size.x) * options.size.y * options.samples;
+}
+
+/// How many times as fast as the first device, round by round: what slows the machine for a while slows both.
+Spread speed_ratio(const BenchSeries& first, const BenchSeries& series) {
+  std::vector<double> ratios(series.milliseconds.size());
+  std::transform(first.milliseconds.begin(), first.milliseconds.end(), series.milliseconds.begin(), ratios.begin(),
+                 [](double milliseconds_first, double milliseconds) { return milliseconds_first / milliseconds; });
+  return spread(std::move(ratios));
+}
+
+nlohmann::ordered_json spread_json(const Spread& values) {
+  return {{"median", values.median}, {"min", values.least}, {"max", values.most}};
+}
+
+}  // namespace
+
+std::string table(const BenchReport& report) {
+  const RenderOptions& options = report.options;
+  std::string text =
+      fmt::format("{} ({} triangles), {}x{}, {} spp, depth {}, seed {}: {} rounds after one to warm up\n\n",
+                  options.scene.string(), report.triangles, options.size.x, options.size.y, options.samples,
+                  options.depth, options.seed, report.series.front().milliseconds.size());
+  const auto row = [&](const auto&... cells) {
+    fmt::format_to(std::back_inserter(text), "{:<12}{:<30}{:>12}{:>14}  {}\n", cells...);
+  };
+  row("device", "ms (min, max)", "Mrays/s", "Msamples/s", "times the first device's speed (min, max)");
+  for (const BenchSeries& series : report.series) {
+    const Spread times = spread(series.milliseconds);
+    const Spread ratio = speed_ratio(report.series.front(), series);
+    row(series.device.name, fmt::format("{:.1f} ({:.1f}, {:.1f})", times.median, times.least, times.most),
+        fmt::format("{:.3f}", per_second_in_millions(static_cast<double>(series.rays), times.median)),
+        fmt::format("{:.3f}", per_second_in_millions(camera_paths(options), times.median)),
+        fmt::format("{:.3f} ({:.3f}, {:.3f})", ratio.median, ratio.least, ratio.most));
+  }
+  text += '\n';
+  for (const BenchSeries& series : report.series) {
+    fmt::format_to(std::back_inserter(text), "{:<12}{}, {}\n", series.device.name, series.device.description,
+                   series.device.driver);
+  }
+  return text;
+}
+
+nlohmann::ordered_json to_json(const BenchReport& report) {
+  const RenderOptions& options = report.options;
+  nlohmann::ordered_json json;
+  json["settings"] = {{"scene", options.scene.string()},
+                      {"triangles", report.triangles},
+                      {"width", options.size.x},
+                      {"height", options.size.y},
+                      {"spp", options.samples},
+                      {"depth", options.depth},
+                      {"seed", options.seed},
+                      {"threads", options.threads}};
+  json["devices"] = nlohmann::ordered_json::array();
+  for (const BenchSeries& series : report.series) {
+    const Spread times = spread(series.milliseconds);
+    nlohmann::ordered_json entry = to_json(series.device);
+    entry["ms"] = spread_json(times);
+    entry["ms_rounds"] = series.milliseconds;
+    entry["build_ms"] = series.build_milliseconds;
+    entry["rays"] = series.rays;
+    entry["mrays"] = per_second_in_millions(static_cast<double>(series.rays), times.median);
+    entry["msamples"] = per_second_in_millions(camera_paths(options), times.median);
+    entry["speed_ratio"] = spread_json(speed_ratio(report.series.front(), series));
+    json["devices"].push_back(std::move(entry));
+  }
+  json["version"] = TANDEM_VERSION;
+  return json;
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "rhi/device.hpp"
+#include "tools/render_options.hpp"
+
+namespace tandem::tools {
+
+/// What one device did in each round of `tandem bench`.
+struct BenchSeries {
+  rhi::DeviceInfo device;
+  std::uint64_t rays = 0;            ///< of one round
+  double build_milliseconds = 0.0;   ///< of the acceleration structures, once
+  std::vector<double> milliseconds;  ///< of each round
+};
+
+struct BenchReport {
+  RenderOptions options;
+  std::uint64_t triangles = 0;
+  std::vector<BenchSeries> series;  ///< in the order of the command line; the same number of rounds each
+};
+
+/// The aligned table for people: medians, with the least and the most in brackets.
+std::string table(const BenchReport& report);
+
+/// The same for programs, with every round.
+nlohmann::ordered_json to_json(const BenchReport& report);
+
+}  // namespace tandem::tools

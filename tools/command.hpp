@@ -1,0 +1,26 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+/// The commands of the command line. Each add_*_command declares a subcommand of `app` with its options; when the
+/// command line names it, `action` becomes what it asks for. An action prints its results to standard output, returns
+/// the exit code, and throws std::exception with one clear sentence when it cannot do what was asked.
+namespace tandem::tools {
+
+using Action = std::function<int()>;
+
+namespace exit_code {
+inline constexpr int success = 0;
+inline constexpr int differ = 1;  ///< `tandem diff`: the images do not agree
+inline constexpr int error = 2;
+inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
+}  // namespace exit_code
+
+void add_devices_command(CLI::App& app, Action& action);
+void add_render_command(CLI::App& app, Action& action);
+void add_diff_command(CLI::App& app, Action& action);
+void add_generate_command(CLI::App& app, Action& action);
+void add_bench_command(CLI::App& app, Action& action);
+
+}  // namespace tandem::tools

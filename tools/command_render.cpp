@@ -1,0 +1,60 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "pathtracer/image_io.hpp"
+#include "tools/command.hpp"
+#include "tools/messages.hpp"
+#include "tools/output_file.hpp"
+#include "tools/render_options.hpp"
+#include "tools/rendering.hpp"
+
+namespace tandem::tools {
+namespace {
+
+struct Options {
+  RenderOptions render;
+  std::string device = "cpu";
+  std::filesystem::path output;
+};
+
+int render_image(const Options& options) {
+  pathtracer::check_image_path(options.output);
+  const pathtracer::Scene scene = load_scene(options.render);
+  const Rendering rendering = render(open_device(options.device, options.render), scene,
+                                     render_settings(options.render, scene), options.render.samples);
+  print_warnings(rendering.warnings);
+  const OutputFile file{options.output, [&](const std::filesystem::path& path) {
+                          pathtracer::write_image(path, rendering.image, rendering.metadata);
+                        }};
+  write_or_rescue({&file, 1});
+  fmt::print("{}: {}x{}, {} spp on {} ({}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
+             options.render.size.x, options.render.size.y, options.render.samples, rendering.device.name,
+             rendering.device.description, rendering.milliseconds,
+             per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
+  return exit_code::success;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Action& action) {
+  CLI::App* const command = app.add_subcommand("render", "Render a scene on one device into an image file");
+  const auto options = std::make_shared<Options>();
+  add_render_options(*command, options->render);
+  command->add_option("-o,--output", options->output, "Image: .exr (linear, 32-bit float) or .png (sRGB, 8 bits)")
+      ->required()
+      ->type_name("FILE");
+  command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
+      ->type_name("D")
+      ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  tandem render scenes/cornell_box.obj -o box.png\n"
+      "  tandem render scenes/cornell_spheres.obj --device vulkan --size 1280x720 --spp 256 -o spheres.exr\n"
+      "  tandem render model.obj --camera-position 0,1,5 --camera-target 0,1,0 --fov 35 -o model.png");
+  command->callback([&action, options] { action = [options] { return render_image(*options); }; });
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "rhi/device.hpp"
+
+namespace tandem::tools {
+
+/// name, backend, description, driver, api and kind.
+nlohmann::ordered_json to_json(const rhi::DeviceInfo& device);
+
+/// to_json with capabilities and limits.
+nlohmann::ordered_json to_json_in_full(const rhi::DeviceInfo& device);
+
+/// "discrete GPU", "CPU", ...
+const char* kind_name(rhi::DeviceKind kind);
+
+/// The text of a JSON file. Bytes that are no UTF-8 (a file name may hold any) are replaced.
+std::string json_text(const nlohmann::ordered_json& value);
+
+}  // namespace tandem::tools

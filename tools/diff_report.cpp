@@ -1,0 +1,120 @@
+#include "tools/diff_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "tools/device_json.hpp"
+
+namespace tandem::tools {
+namespace {
+
+double mrays(const Rendering& rendering) {
+  return per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds);
+}
+
+nlohmann::ordered_json vector_json(const glm::vec3& vector) { return {vector.x, vector.y, vector.z}; }
+
+/// The count behind a fraction of pixels.
+std::uint64_t pixel_count(const DiffReport& report, double fraction) {
+  return static_cast<std::uint64_t>(std::llround(fraction * static_cast<double>(report.metrics.pixels)));
+}
+
+}  // namespace
+
+std::string table(const DiffReport& report) {
+  const RenderOptions& options = report.options;
+  const compare::Metrics& metrics = report.metrics;
+  std::string text;
+  const auto line = [&](const char* name, const std::string& value) {
+    fmt::format_to(std::back_inserter(text), "{:<18}{}\n", name, value);
+  };
+  const auto columns = [&](const char* name, const std::string& a, const std::string& b) {
+    const std::size_t width =
+        std::max({report.a.device.description.size(), report.a.device.driver.size(), std::size_t{20}});
+    line(name, fmt::format("{:<{}}{}", a, width + 2, b));
+  };
+  const auto fraction = [&](const char* name, double value) {
+    line(name, fmt::format("{:9.5f} %  {} pixels", 100.0 * value, pixel_count(report, value)));
+  };
+
+  line("scene", fmt::format("{} ({} triangles)", options.scene.string(), report.triangles));
+  line("settings", fmt::format("{}x{}, {} spp, depth {}, seed {}", options.size.x, options.size.y, options.samples,
+                               options.depth, options.seed));
+  text += '\n';
+  columns("", "a", "b");
+  columns("device", report.a.device.name, report.b.device.name);
+  columns("hardware", report.a.device.description, report.b.device.description);
+  columns("driver", report.a.device.driver, report.b.device.driver);
+  columns("time", fmt::format("{:.2f} ms", report.a.milliseconds), fmt::format("{:.2f} ms", report.b.milliseconds));
+  columns("rays", fmt::format("{}", report.a.rays), fmt::format("{}", report.b.rays));
+  columns("speed", fmt::format("{:.3f} Mrays/s", mrays(report.a)), fmt::format("{:.3f} Mrays/s", mrays(report.b)));
+  columns("mean", fmt::format("{:.9g}", metrics.mean_a), fmt::format("{:.9g}", metrics.mean_b));
+  columns("non-finite pixels", fmt::format("{}", metrics.non_finite_a), fmt::format("{}", metrics.non_finite_b));
+  text += '\n';
+  line("pixels", fmt::format("{}", metrics.pixels));
+  fraction("bit-equal", metrics.bit_equal);
+  fraction("within 1e-5", metrics.within_1e5);
+  fraction("within 1e-3", metrics.within_1e3);
+  line("max difference", fmt::format("{:.6g}", metrics.max_abs));
+  line("mean difference", fmt::format("{:.6g}", metrics.mean_abs));
+  line("RMSE", fmt::format("{:.6g}", metrics.rmse));
+  line("PSNR", metrics.psnr ? fmt::format("{:.2f} dB (peak {:.6g})", *metrics.psnr, metrics.peak)
+                            : std::string("infinite (no difference)"));
+  text += '\n';
+  line("verdict", compare::name(report.verdict));
+  for (const std::string& reason : report.verdict.reasons) line("", reason);
+  return text;
+}
+
+nlohmann::ordered_json to_json(const DiffReport& report) {
+  const RenderOptions& options = report.options;
+  const compare::Metrics& metrics = report.metrics;
+  nlohmann::ordered_json json;
+  json["verdict"] = compare::name(report.verdict);
+  json["reasons"] = report.verdict.reasons;
+  json["pixels"] = metrics.pixels;
+  json["bit_equal"] = metrics.bit_equal;
+  json["within_1e5"] = metrics.within_1e5;
+  json["within_1e3"] = metrics.within_1e3;
+  json["max_abs"] = metrics.max_abs;
+  json["mean_abs"] = metrics.mean_abs;
+  json["mean_a"] = metrics.mean_a;
+  json["mean_b"] = metrics.mean_b;
+  json["rmse"] = metrics.rmse;
+  json["psnr"] = metrics.psnr ? nlohmann::ordered_json(*metrics.psnr) : nlohmann::ordered_json(nullptr);
+  json["peak"] = metrics.peak;
+  json["non_finite_a"] = metrics.non_finite_a;
+  json["non_finite_b"] = metrics.non_finite_b;
+  json["ms_a"] = report.a.milliseconds;
+  json["ms_b"] = report.b.milliseconds;
+  json["build_ms_a"] = report.a.build_milliseconds;
+  json["build_ms_b"] = report.b.build_milliseconds;
+  json["rays_a"] = report.a.rays;
+  json["rays_b"] = report.b.rays;
+  json["mrays_a"] = mrays(report.a);
+  json["mrays_b"] = mrays(report.b);
+  json["device_a"] = to_json(report.a.device);
+  json["device_b"] = to_json(report.b.device);
+  json["settings"] = {{"scene", options.scene.string()},
+                      {"triangles", report.triangles},
+                      {"width", options.size.x},
+                      {"height", options.size.y},
+                      {"spp", options.samples},
+                      {"depth", options.depth},
+                      {"seed", options.seed},
+                      {"camera_position", vector_json(report.a.camera.position)},
+                      {"camera_target", vector_json(report.a.camera.target)},
+                      {"fov", report.a.camera.vertical_fov},
+                      {"background", vector_json(report.a.background)}};
+  json["tolerance"] = {{"within_1e3", report.tolerance.within_1e3},
+                       {"bit_equal", report.tolerance.bit_equal},
+                       {"mean", report.tolerance.mean},
+                       {"non_finite", report.tolerance.non_finite}};
+  json["version"] = TANDEM_VERSION;
+  return json;
+}
+
+}  // namespace tandem::tools

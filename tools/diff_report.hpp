@@ -1,0 +1,30 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "compare/metrics.hpp"
+#include "compare/verdict.hpp"
+#include "tools/render_options.hpp"
+#include "tools/rendering.hpp"
+
+namespace tandem::tools {
+
+/// All that `tandem diff` found out.
+struct DiffReport {
+  RenderOptions options;
+  std::uint64_t triangles = 0;
+  Rendering a;
+  Rendering b;
+  compare::Metrics metrics;
+  compare::Tolerance tolerance;
+  compare::Verdict verdict;
+};
+
+/// The aligned table for people, with a line break at its end.
+std::string table(const DiffReport& report);
+
+/// The same for programs; docs/user-guide.md lists the keys.
+nlohmann::ordered_json to_json(const DiffReport& report);
+
+}  // namespace tandem::tools

@@ -1,0 +1,68 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <new>
+#include <string>
+
+#include "tools/command.hpp"
+#include "tools/interruption.hpp"
+
+namespace {
+
+using namespace tandem::tools;
+
+/// One line on standard error, whatever line breaks the sentence came with.
+int fail(std::string sentence, int code = exit_code::error) {
+  std::replace(sentence.begin(), sentence.end(), '\n', ' ');
+  fmt::print(stderr, "tandem: {}\n", sentence);
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Renders one ray-tracing shader on Vulkan and on the CPU, and compares the images bit by bit.",
+               "tandem");
+  app.set_version_flag("--version", "tandem " TANDEM_VERSION);
+  app.require_subcommand(1);
+  app.footer(
+      "Exit code: 0 success, or the images agree; 1 the images differ (tandem diff); 2 any error, with one sentence\n"
+      "on standard error; 130 interrupted. 'tandem COMMAND --help' explains a command.");
+  Action action;
+  add_devices_command(app, action);
+  add_render_command(app, action);
+  add_diff_command(app, action);
+  add_generate_command(app, action);
+  add_bench_command(app, action);
+  const char* const hint = "'tandem --help' lists the commands";
+  if (argc < 2) return fail(fmt::format("a command is required; {}", hint));
+  if (argv[1][0] != '-' &&
+      app.get_subcommands([&](const CLI::App* command) { return command->check_name(argv[1]); }).empty()) {
+    return fail(fmt::format("'{}' is not a command; {}", argv[1], hint));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& request) {
+    return app.exit(request);  // --help and --version
+  } catch (const CLI::ParseError& error) {
+    return fail(error.what());
+  }
+  note_interrupts();
+  return action();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    const int code = run(argc, argv);
+    if (std::fflush(stdout) != 0) return fail("standard output cannot be written");
+    return code;
+  } catch (const Interrupted& interruption) {
+    return fail(interruption.what(), exit_code::interrupted);
+  } catch (const std::bad_alloc&) {
+    return fail("there is not enough memory for this scene and image size");
+  } catch (const std::exception& error) {
+    return fail(error.what());
+  }
+}

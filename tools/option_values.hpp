@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+
+/// Options whose values are read strictly: the whole text must be a value in range, else the command line is refused
+/// with a sentence that names the option, the text and what was expected. `value` must outlive the parsing.
+namespace tandem::tools {
+
+/// A whole number from `least` to `most`; the help shows the current value as the default.
+CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::uint64_t& value, std::uint64_t least,
+                              std::uint64_t most, const std::string& description);
+CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::uint32_t& value, std::uint32_t least,
+                              std::uint32_t most, const std::string& description);
+
+/// A number from `least` to `most`, both included.
+CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, double least, double most,
+                        const std::string& description);
+CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<float>& value, float least,
+                        float most, const std::string& type, const std::string& description);
+
+/// Pixels as WIDTHxHEIGHT.
+CLI::Option* add_size(CLI::App& command, const std::string& name, glm::uvec2& value, const std::string& description);
+
+/// Three finite numbers, comma-separated, each at least `least`. `type` stands for the value in the help.
+CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<glm::vec3>& value, float least,
+                        const std::string& type, const std::string& description);
+
+}  // namespace tandem::tools

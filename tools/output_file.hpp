@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+
+/// Files that hold what took long to compute.
+namespace tandem::tools {
+
+/// Throws pathtracer::Error unless a file could be written there now.
+void check_output_path(const std::filesystem::path& path);
+
+/// A folder for results, made with its parents unless it exists. One that was made is removed again when nothing has
+/// been written into it by the time this object goes.
+class OutputFolder {
+ public:
+  /// Throws pathtracer::Error when it cannot be made or is no folder.
+  explicit OutputFolder(std::filesystem::path path);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  bool made_ = false;
+};
+
+/// Writes the text under a temporary name, then renames. Throws pathtracer::Error.
+void write_text(const std::filesystem::path& path, const std::string& text);
+
+struct OutputFile {
+  std::filesystem::path path;
+  std::function<void(const std::filesystem::path&)> write;  ///< writes the file whole or throws
+};
+
+/// Writes the files. What cannot be written although its path was good before the computation (a disk that filled up
+/// since) is saved under its name in a new folder for temporary files instead; then throws pathtracer::Error that says
+/// why and where it is now.
+void write_or_rescue(std::span<const OutputFile> files);
+
+}  // namespace tandem::tools

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "pathtracer/renderer.hpp"
+#include "pathtracer/scene.hpp"
+#include "rhi/device.hpp"
+#include "tools/render_options.hpp"
+
+/// From the options of a command to pictures: what render, diff and bench share.
+namespace tandem::tools {
+
+/// Loads the scene and prints its warnings.
+pathtracer::Scene load_scene(const RenderOptions& options);
+
+/// The options as the renderer takes them. A camera that is given in part is completed from the automatic one; one
+/// that is only given a position looks at the scene's centre.
+pathtracer::RenderSettings render_settings(const RenderOptions& options, const pathtracer::Scene& scene);
+
+/// Creates the device; what it has to say from warnings on goes to standard error, from any thread.
+rhi::DeviceHandle open_device(const std::string& name, const RenderOptions& options);
+
+/// A finished picture and how it came about.
+struct Rendering {
+  pathtracer::Image image;
+  rhi::DeviceInfo device;
+  pathtracer::Camera camera;
+  glm::vec3 background{0};
+  double milliseconds = 0.0;        ///< on the device, without building
+  double build_milliseconds = 0.0;  ///< of the acceleration structures
+  std::uint64_t rays = 0;           ///< counted
+  pathtracer::ImageMetadata metadata;
+  std::vector<std::string> warnings;
+};
+
+/// Adds the samples with a progress bar. Throws Interrupted.
+void render_samples(pathtracer::Renderer& renderer, std::uint32_t samples, const std::string& label);
+
+/// Renders on the device with a progress bar. Throws Interrupted.
+Rendering render(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
+                 const pathtracer::RenderSettings& settings, std::uint32_t samples);
+
+/// Millions a second.
+double per_second_in_millions(double count, double milliseconds);
+
+}  // namespace tandem::tools
