@@ -26,4 +26,6 @@ endif()
 if(TANDEM_BUILD_TESTS)
   find_package(doctest REQUIRED CONFIG)
 endif()
+# Used as a header only, so nothing needs linking and installed programs do not depend on it.
+find_path(TANDEM_XXHASH_INCLUDE_DIRECTORY xxhash.h REQUIRED)
 find_program(TANDEM_GLSLANG glslangValidator REQUIRED)

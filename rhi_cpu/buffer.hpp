@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "rhi/buffer.hpp"
+#include "rhi_cpu/device_state.hpp"
+
+namespace tandem::cpu {
+
+/// Host memory, aligned to a cache line.
+class Buffer final : public rhi::Buffer {
+ public:
+  /// Throws Error(out_of_memory).
+  Buffer(DeviceStateHandle device, const rhi::BufferDesc& desc);
+
+  std::uint64_t device_address() const override;
+
+  const DeviceState& device() const noexcept { return *device_; }
+  std::byte* data() const noexcept { return memory_.get(); }
+
+ private:
+  struct Free {
+    void operator()(std::byte* memory) const;
+  };
+
+  DeviceStateHandle device_;
+  std::unique_ptr<std::byte, Free> memory_;
+};
+
+}  // namespace tandem::cpu

@@ -1,0 +1,110 @@
+#include "rhi_cpu/command_list.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "rhi/error.hpp"
+#include "rhi/validation.hpp"
+#include "rhi_cpu/acceleration_structure.hpp"
+#include "rhi_cpu/bind_group.hpp"
+#include "rhi_cpu/buffer.hpp"
+#include "rhi_cpu/compute_pipeline.hpp"
+#include "rhi_cpu/query_pool.hpp"
+
+namespace tandem::cpu {
+namespace {
+
+std::shared_ptr<Buffer> own_buffer(const rhi::BufferHandle& buffer, const DeviceState& device) {
+  return own<Buffer>(buffer, device, buffer->desc().label);
+}
+
+void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGroup>> groups,
+         std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& workgroup_count,
+         Workers& workers) {
+  const kernel::KernelInfo& kernel = pipeline.kernel();
+  const std::vector<kernel::Resource> resources = resource_table(kernel, groups, pipeline.label());
+  const kernel::Dispatch dispatch{.resources = resources.data(),
+                                  .push_constants = push_constants.data(),
+                                  .workgroup_count = {workgroup_count[0], workgroup_count[1], workgroup_count[2]}};
+  const std::uint64_t count = std::uint64_t{workgroup_count[0]} * workgroup_count[1] * workgroup_count[2];
+  workers.for_each_range(count, [&](std::uint64_t first, std::uint64_t end) { kernel.run(dispatch, first, end); });
+}
+
+}  // namespace
+
+CommandList::CommandList(DeviceStateHandle device, std::string label)
+    : rhi::CommandList(std::move(label)), device_(std::move(device)) {}
+
+void CommandList::record(std::function<void()> command) {
+  if (submitted_)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "a command is recorded after the list was submitted");
+  commands_.push_back(std::move(command));
+}
+
+void CommandList::upload(const rhi::BufferHandle& buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
+  rhi::validation::check_upload(*this, buffer, offset, bytes.size());
+  record(
+      [destination = own_buffer(buffer, *device_), offset, copy = std::vector<std::byte>(bytes.begin(), bytes.end())] {
+        std::copy(copy.begin(), copy.end(), destination->data() + offset);
+      });
+}
+
+void CommandList::copy(const rhi::BufferRange& source, const rhi::BufferRange& destination) {
+  rhi::validation::check_copy(*this, source, destination);
+  record([from = own_buffer(source.buffer, *device_), from_offset = source.offset,
+          to = own_buffer(destination.buffer, *device_), to_offset = destination.offset,
+          size = source.resolved_size()] {
+    std::memcpy(to->data() + to_offset, from->data() + from_offset, static_cast<std::size_t>(size));
+  });
+}
+
+void CommandList::fill(const rhi::BufferRange& range, std::uint32_t value) {
+  rhi::validation::check_fill(*this, range);
+  record([buffer = own_buffer(range.buffer, *device_), offset = range.offset, size = range.resolved_size(), value] {
+    for (std::uint64_t i = 0; i < size; i += sizeof(value))
+      std::memcpy(buffer->data() + offset + i, &value, sizeof(value));
+  });
+}
+
+void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& structure,
+                                     const rhi::BottomLevelDesc& desc) {
+  const auto created = std::dynamic_pointer_cast<BottomLevelStructure>(structure);
+  rhi::validation::check(desc, device_->info);
+  rhi::validation::check_build(*this, structure, created ? created->created_from() : rhi::BottomLevelDesc{}, desc);
+  check_owner(desc, *device_);
+  record([built = own<BottomLevelStructure>(structure, *device_, structure->label()), desc] { built->build(desc); });
+}
+
+void CommandList::build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
+  const auto created = std::dynamic_pointer_cast<TopLevelStructure>(structure);
+  rhi::validation::check(desc, device_->info);
+  rhi::validation::check_build(*this, structure, created ? created->created_from() : rhi::TopLevelDesc{}, desc);
+  check_owner(desc, *device_);
+  record([built = own<TopLevelStructure>(structure, *device_, structure->label()), desc] { built->build(desc); });
+}
+
+void CommandList::dispatch(const rhi::DispatchDesc& desc) {
+  rhi::validation::check(desc, device_->info);
+  const std::string& label = desc.pipeline->label();
+  std::vector<std::shared_ptr<BindGroup>> groups;
+  for (const rhi::BindGroupHandle& group : desc.bind_groups) groups.push_back(own<BindGroup>(group, *device_, label));
+  record([pipeline = own<ComputePipeline>(desc.pipeline, *device_, label), groups = std::move(groups),
+          push_constants = std::vector<std::byte>(desc.push_constants.begin(), desc.push_constants.end()),
+          count = desc.workgroup_count,
+          &workers = device_->workers] { run(*pipeline, groups, push_constants, count, workers); });
+}
+
+void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) {
+  rhi::validation::check_timestamp(*this, pool, index);
+  record([own_pool = own<QueryPool>(pool, *device_, pool->desc().label), index] { own_pool->write(index); });
+}
+
+void CommandList::execute() {
+  if (std::exchange(submitted_, true))
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "the list is submitted a second time");
+  const std::vector<std::function<void()>> commands = std::exchange(commands_, {});
+  for (const std::function<void()>& command : commands) command();
+}
+
+}  // namespace tandem::cpu

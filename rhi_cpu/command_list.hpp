@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "rhi/command_list.hpp"
+#include "rhi_cpu/device_state.hpp"
+
+namespace tandem::cpu {
+
+/// Commands as functions, called one after the other when the list is submitted.
+class CommandList final : public rhi::CommandList {
+ public:
+  CommandList(DeviceStateHandle device, std::string label);
+
+  void upload(const rhi::BufferHandle& buffer, std::uint64_t offset, std::span<const std::byte> bytes) override;
+  void copy(const rhi::BufferRange& source, const rhi::BufferRange& destination) override;
+  void fill(const rhi::BufferRange& range, std::uint32_t value) override;
+  void build_bottom_level(const rhi::AccelerationStructureHandle& structure, const rhi::BottomLevelDesc& desc) override;
+  void build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) override;
+  void dispatch(const rhi::DispatchDesc& desc) override;
+  void write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) override;
+
+  const DeviceState& device() const noexcept { return *device_; }
+  /// Runs the commands and lets go of what they name, also when one of them throws. A second time is an Error.
+  void execute();
+
+ private:
+  void record(std::function<void()> command);
+
+  DeviceStateHandle device_;
+  std::vector<std::function<void()>> commands_;
+  bool submitted_ = false;
+};
+
+}  // namespace tandem::cpu

@@ -1,0 +1,10 @@
+#include "rhi_cpu/compute_pipeline.hpp"
+
+namespace tandem::cpu {
+
+ComputePipeline::ComputePipeline(DeviceStateHandle device, const rhi::ComputePipelineDesc& desc)
+    : rhi::ComputePipeline(desc),
+      device_(std::move(device)),
+      kernel_(device_->kernels.kernel(*desc.shader, desc.specialization, desc.label)) {}
+
+}  // namespace tandem::cpu

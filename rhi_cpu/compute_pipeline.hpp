@@ -1,0 +1,23 @@
+#pragma once
+
+#include "rhi/compute_pipeline.hpp"
+#include "rhi_cpu/device_state.hpp"
+#include "rhi_cpu/kernel_store.hpp"
+
+namespace tandem::cpu {
+
+/// The kernel of a shader, loaded.
+class ComputePipeline final : public rhi::ComputePipeline {
+ public:
+  /// Throws what KernelStore::kernel does.
+  ComputePipeline(DeviceStateHandle device, const rhi::ComputePipelineDesc& desc);
+
+  const DeviceState& device() const noexcept { return *device_; }
+  const kernel::KernelInfo& kernel() const noexcept { return *kernel_.info; }
+
+ private:
+  DeviceStateHandle device_;
+  Kernel kernel_;
+};
+
+}  // namespace tandem::cpu

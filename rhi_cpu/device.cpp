@@ -1,0 +1,145 @@
+#include "rhi_cpu/device.hpp"
+
+#include <cstring>
+#include <new>
+
+#include <fmt/format.h>
+
+#include "rhi/validation.hpp"
+#include "rhi_cpu/acceleration_structure.hpp"
+#include "rhi_cpu/bind_group.hpp"
+#include "rhi_cpu/buffer.hpp"
+#include "rhi_cpu/command_list.hpp"
+#include "rhi_cpu/compute_pipeline.hpp"
+#include "rhi_cpu/device_state.hpp"
+#include "rhi_cpu/fence.hpp"
+#include "rhi_cpu/query_pool.hpp"
+#include "rhi_cpu/shader_module.hpp"
+
+namespace tandem::cpu {
+namespace {
+
+/// A mistyped number shall not start threads until the machine has no more.
+constexpr std::uint32_t most_threads = 4096;
+
+class Device final : public rhi::Device {
+ public:
+  explicit Device(DeviceStateHandle state) : rhi::Device(state->info), state_(std::move(state)) {}
+
+  rhi::BufferHandle create_buffer(const rhi::BufferDesc& desc) override {
+    return std::make_shared<Buffer>(state_, desc);
+  }
+
+  rhi::AccelerationStructureHandle create_bottom_level(const rhi::BottomLevelDesc& desc) override {
+    rhi::validation::check(desc, info());
+    check_owner(desc, *state_);
+    return std::make_shared<BottomLevelStructure>(state_, desc);
+  }
+
+  rhi::AccelerationStructureHandle create_top_level(const rhi::TopLevelDesc& desc) override {
+    rhi::validation::check(desc, info());
+    check_owner(desc, *state_);
+    return std::make_shared<TopLevelStructure>(state_, desc);
+  }
+
+  rhi::ShaderModuleHandle create_shader_module(const rhi::ShaderModuleDesc& desc) override {
+    return std::make_shared<ShaderModule>(desc);
+  }
+
+  rhi::ComputePipelineHandle create_compute_pipeline(const rhi::ComputePipelineDesc& desc) override {
+    rhi::validation::check(desc, info());
+    return std::make_shared<ComputePipeline>(state_, desc);
+  }
+
+  rhi::BindGroupHandle create_bind_group(const rhi::BindGroupDesc& desc) override {
+    rhi::validation::check(desc, info());
+    own<ComputePipeline>(desc.pipeline, *state_, desc.label);
+    return std::make_shared<BindGroup>(state_, desc);
+  }
+
+  rhi::QueryPoolHandle create_query_pool(const rhi::QueryPoolDesc& desc) override {
+    rhi::validation::check(desc);
+    return std::make_shared<QueryPool>(state_, desc);
+  }
+
+  rhi::CommandListHandle create_command_list(std::string label) override {
+    return std::make_shared<CommandList>(state_, std::move(label));
+  }
+
+  rhi::FenceHandle submit(const rhi::CommandListHandle& list) override {
+    if (list == nullptr) throw rhi::Error(rhi::ErrorCode::invalid_argument, "", "submit names no command list");
+    const std::shared_ptr<CommandList> commands = own<CommandList>(list, *state_, list->label());
+    const std::lock_guard lock(state_->submission);
+    try {
+      commands->execute();
+    } catch (const std::bad_alloc&) {
+      throw rhi::Error(rhi::ErrorCode::out_of_memory, list->label(), "memory ran out while the list was executed");
+    }
+    return std::make_shared<Fence>();
+  }
+
+  void wait_idle() override { const std::lock_guard lock(state_->submission); }
+
+  void download(const rhi::BufferHandle& buffer, std::uint64_t offset, std::span<std::byte> bytes) override {
+    rhi::validation::check_download(buffer, offset, bytes.size());
+    const std::shared_ptr<Buffer> source = own<Buffer>(buffer, *state_, buffer->desc().label);
+    const std::lock_guard lock(state_->submission);
+    std::copy_n(source->data() + offset, bytes.size(), bytes.data());
+  }
+
+ private:
+  DeviceStateHandle state_;
+};
+
+rhi::Limits limits() {
+  return {.max_push_constant_size = 256,
+          // The length of an array in a shader has 32 bits.
+          .max_storage_buffer_range = 0xFFFFFFFFu,
+          .max_uniform_buffer_range = 0xFFFFFFFFu,
+          // Kernels load and store through typed views, whose widest member has 16 bytes of alignment.
+          .storage_buffer_offset_alignment = 16,
+          .uniform_buffer_offset_alignment = 16,
+          .max_workgroup_size = {1024, 1024, 1024},
+          .max_workgroup_invocations = 1024,
+          .max_workgroup_count = {0x7FFFFFFF, 65535, 65535},
+          .max_bind_groups = 32,
+          .max_geometry_count = (1u << 24) - 1,
+          .max_primitive_count = (1u << 29) - 1,
+          .max_instance_count = (1u << 24) - 1};
+}
+
+}  // namespace
+
+DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled)
+    : info(device_info()),
+      workers(desc.thread_count),
+      embree(desc.on_message, workers.thread_count()),
+      kernels(std::move(precompiled), desc.kernel_cache, desc.on_message) {}
+
+rhi::DeviceInfo device_info() {
+  const std::string processor = processor_name();
+  return {.name = "cpu",
+          .backend = "cpu",
+          .description = processor.empty() ? "CPU" : processor,
+          .driver = embree_version(),
+          .api = "",
+          .kind = rhi::DeviceKind::cpu,
+          .capabilities = {.ray_query = true,
+                           .ray_tracing_pipeline = false,
+                           .position_fetch = false,
+                           .aabb_geometry = false,
+                           .scalar_block_layout = true,
+                           .shader_int64 = true,
+                           .shader_float64 = true,
+                           .timestamps = true},
+          .limits = limits()};
+}
+
+rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled) {
+  if (desc.thread_count > most_threads)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
+                     fmt::format("a device of {} threads; the most is {}", desc.thread_count, most_threads));
+  return std::make_shared<Device>(std::make_shared<DeviceState>(desc, std::move(precompiled)));
+}
+
+}  // namespace tandem::cpu
