@@ -8,7 +8,7 @@
 #include "bsdf/bsdf.glsl"
 #include "camera/pinhole.glsl"
 #include "geometry/frame.glsl"
-#include "geometry/triangle.glsl"
+#include "geometry/surface.glsl"
 #include "light/emissive_triangles.glsl"
 #include "random.glsl"
 #include "trace.glsl"

@@ -3,7 +3,7 @@
 #ifndef TANDEM_LIGHT_EMISSIVE_TRIANGLES
 #define TANDEM_LIGHT_EMISSIVE_TRIANGLES
 
-#include "geometry/triangle.glsl"
+#include "geometry/surface.glsl"
 #include "random.glsl"
 #include "sampling/alias_table.glsl"
 #include "sampling/triangle.glsl"
