@@ -6,10 +6,14 @@
 
 namespace tandem::pathtracer {
 
+struct ObjOptions {
+  bool allow_missing_mtl = false;  ///< an MTL file that is not there is a warning, and its materials are grey
+};
+
 /// Reads a Wavefront OBJ file and the MTL files that it names (docs/scenes.md says what is understood and how).
 /// Throws Error, naming file and line, for what cannot be meant: a missing or truncated file, a missing MTL file, a
 /// coordinate that is no finite number, an index out of range, no triangles, a dielectric without index of refraction.
 /// What is merely ignored becomes a warning of the scene.
-Scene load_obj(const std::filesystem::path& path);
+Scene load_obj(const std::filesystem::path& path, const ObjOptions& options = {});
 
 }  // namespace tandem::pathtracer

@@ -1,0 +1,162 @@
+#include "pathtracer/mtl_loader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tiny_obj_loader.h>
+
+#include "pathtracer/scene.hpp"
+#include "pathtracer/wavefront_text.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+/// What a material starts from where tinyobjloader's own start would be black, or glass that does not refract.
+constexpr const char* defaults = "Kd 0.5 0.5 0.5\nNi 0";
+/// Of a dielectric that gives none (exporters write Ni 0): window glass.
+constexpr float default_ior = 1.5f;
+
+/// What is gathered while the statements pass by.
+struct Reading {
+  WavefrontText* text = nullptr;
+  bool inside_material = false;
+  std::set<std::string> maps;  ///< texture statements that are ignored
+};
+
+/// "Kd r g b" with the numbers checked; "Kd r" means r three times.
+std::string checked_color(const Reading& reading, const Statement& statement) {
+  std::string_view rest = statement.rest;
+  std::string numbers;
+  int count = 0;
+  std::string_view last;
+  for (std::string_view word = take_word(rest); !word.empty() && word[0] != '#' && count < 3; word = take_word(rest)) {
+    double value = 0;
+    if (!parse_number(word, value))
+      throw reading.text->error(fmt::format("{} takes numbers, not '{}'", statement.keyword, word));
+    if (!(value >= 0) || !std::isfinite(static_cast<float>(value)))
+      throw reading.text->error(fmt::format("{} of {} is not finite and at least 0", statement.keyword, word));
+    numbers += fmt::format(" {}", word);
+    last = word;
+    ++count;
+  }
+  if (count == 1) numbers += fmt::format(" {} {}", last, last);
+  if (count != 1 && count != 3)
+    throw reading.text->error(fmt::format("{} takes one or three numbers, here are {}", statement.keyword, count));
+  return fmt::format("{}{}", statement.keyword, numbers);
+}
+
+std::string checked_ior(const Reading& reading, const Statement& statement) {
+  std::string_view rest = statement.rest;
+  const std::string_view word = take_word(rest);
+  double value = 0;
+  if (!parse_number(word, value) || !(value >= 0) || !std::isfinite(static_cast<float>(value)))
+    throw reading.text->error(
+        fmt::format("an index of refraction (Ni) of '{}' is no finite number of at least 0", word));
+  return fmt::format("Ni {}", word);
+}
+
+std::string checked_illum(const Reading& reading, const Statement& statement) {
+  std::string_view rest = statement.rest;
+  const std::string_view word = take_word(rest);
+  int value = 0;
+  if (!parse_integer(word, value) || value < 0 || value > 10)
+    throw reading.text->error(fmt::format("illum of '{}' is none of the models 0 to 10", word));
+  return fmt::format("illum {}", word);
+}
+
+std::string filter(Reading& reading, std::string_view text) {
+  const Statement statement = split_statement(text);
+  if (statement.keyword == "newmtl") {
+    if (statement.rest.empty()) throw reading.text->error("newmtl names no material");
+    reading.inside_material = true;
+    return fmt::format("newmtl {}\n{}", statement.rest, defaults);
+  }
+  const bool is_map = statement.keyword.starts_with("map_") || statement.keyword == "bump" ||
+                      statement.keyword == "disp" || statement.keyword == "decal" || statement.keyword == "refl" ||
+                      statement.keyword == "norm";
+  if (is_map) reading.maps.emplace(statement.keyword);
+  const bool is_color =
+      statement.keyword == "Kd" || statement.keyword == "Ks" || statement.keyword == "Ke" || statement.keyword == "Tf";
+  if (!is_color && statement.keyword != "Ni" && statement.keyword != "illum") return {};
+  if (!reading.inside_material)
+    throw reading.text->error(fmt::format("{} stands before the first newmtl", statement.keyword));
+  if (statement.keyword == "Ni") return checked_ior(reading, statement);
+  if (statement.keyword == "illum") return checked_illum(reading, statement);
+  return checked_color(reading, statement);
+}
+
+MaterialModel model_of(int illum) {
+  switch (illum) {
+    case 3:
+    case 5:
+    case 8:
+      return MaterialModel::mirror;
+    case 4:
+    case 6:
+    case 7:
+    case 9:
+      return MaterialModel::dielectric;
+    default:
+      return MaterialModel::diffuse;
+  }
+}
+
+glm::vec3 vector(const tinyobj::real_t (&values)[3]) { return {values[0], values[1], values[2]}; }
+
+bool exceeds_one(glm::vec3 color) { return std::max({color.x, color.y, color.z}) > 1; }
+
+GpuMaterial material_of(const tinyobj::material_t& source, bool& default_ior_used) {
+  GpuMaterial material = diffuse_material(vector(source.diffuse), vector(source.emission));
+  material.model = model_of(source.illum);
+  material.reflectance = vector(source.specular);
+  // tinyobjloader has no mark for a Tf that is absent, and a filter that lets nothing pass is no glass.
+  if (vector(source.transmittance) != glm::vec3(0)) material.transmittance = vector(source.transmittance);
+  default_ior_used = material.model == MaterialModel::dielectric && source.ior == 0;
+  if (material.model == MaterialModel::dielectric) material.ior = default_ior_used ? default_ior : source.ior;
+  return material;
+}
+
+}  // namespace
+
+std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vector<std::string>& warnings) {
+  Reading reading;
+  WavefrontText text(path, [&](std::string_view statement) { return filter(reading, statement); });
+  reading.text = &text;
+  std::map<std::string, int> names;
+  std::vector<tinyobj::material_t> sources;
+  std::string warning, error;
+  tinyobj::LoadMtl(&names, &sources, &text.stream(), &warning, &error);
+  if (!reading.inside_material) return {};  // tinyobjloader then gives one that has no name
+
+  std::vector<NamedMaterial> materials;
+  std::vector<std::string> bright, without_ior, repeated;
+  for (const tinyobj::material_t& source : sources) {
+    const auto same_name = [&](const NamedMaterial& other) { return other.name == source.name; };
+    if (std::any_of(materials.begin(), materials.end(), same_name)) {
+      repeated.push_back(source.name);
+      continue;
+    }
+    bool default_ior_used = false;
+    const GpuMaterial material = material_of(source, default_ior_used);
+    if (default_ior_used) without_ior.push_back(source.name);
+    const bool gains = material.model == MaterialModel::diffuse  ? exceeds_one(material.base_color)
+                       : material.model == MaterialModel::mirror ? exceeds_one(material.reflectance)
+                                                                 : exceeds_one(material.transmittance);
+    if (gains) bright.push_back(source.name);
+    materials.push_back({source.name, material});
+  }
+  const auto warn = [&](const auto& what, const char* sentence) {
+    if (!what.empty()) warnings.push_back(fmt::format(fmt::runtime(sentence), path.string(), fmt::join(what, ", ")));
+  };
+  warn(reading.maps, "{}: textures are not read yet, so {} has no effect");
+  warn(bright, "{}: more light leaves than arrives (a factor above 1) at material {}");
+  warn(without_ior, "{}: no index of refraction (Ni) is given, so 1.5 is used for material {}");
+  warn(repeated, "{}: only the first definition counts of material {}");
+  return materials;
+}
+
+}  // namespace tandem::pathtracer

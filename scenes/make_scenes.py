@@ -1,0 +1,158 @@
+#!/usr/bin/env python3
+"""Writes cornell_box.obj and cornell_spheres.obj (with their .mtl) beside this script.
+
+Room, light and blocks are the measured data of the Cornell Program of Computer Graphics,
+https://www.graphics.cornell.edu/online/box/data.html (1998), in millimetres. The reflectances and the emission are the
+RGB values in which renderers usually express its measured spectra (for example McGuire's Computer Graphics Archive).
+
+So that no two faces coincide and no edge ends inside another one, the ceiling has a hole where the light is, the room
+shares its corners, and the blocks have no bottom. The faces of the room look inwards, those of the blocks outwards.
+"""
+import math
+import pathlib
+
+SOURCE = [
+    "# The Cornell box, from the measured data at https://www.graphics.cornell.edu/online/box/data.html",
+    "# Millimetres, y upwards, open towards -z. Written by scenes/make_scenes.py, which says what was cleaned up.",
+]
+ROOM_VERTICES = [
+    (552.8, 0, 0), (0, 0, 0), (0, 0, 559.2), (549.6, 0, 559.2),
+    (556, 548.8, 0), (0, 548.8, 0), (0, 548.8, 559.2), (556, 548.8, 559.2),
+    (343, 548.8, 227), (213, 548.8, 227), (213, 548.8, 332), (343, 548.8, 332),
+]
+# object, material, faces
+ROOM = [
+    ("floor", "white", [(1, 2, 3, 4)]),
+    ("back_wall", "white", [(4, 3, 7, 8)]),
+    ("ceiling", "white", [(5, 8, 12, 9), (8, 7, 11, 12), (7, 6, 10, 11), (6, 5, 9, 10)]),
+    ("right_wall", "green", [(3, 2, 6, 7)]),
+    ("left_wall", "red", [(1, 4, 8, 5)]),
+    ("light", "light", [(9, 12, 11, 10)]),
+]
+BLOCKS = [
+    ("short_block", 165, [(130, 65), (82, 225), (240, 272), (290, 114)]),
+    ("tall_block", 330, [(423, 247), (265, 296), (314, 456), (472, 406)]),
+]
+ROOM_MATERIALS = """\
+# RGB of the measured spectra of https://www.graphics.cornell.edu/online/box/data.html
+newmtl white
+Kd 0.725 0.71 0.68
+illum 1
+
+newmtl green
+Kd 0.14 0.45 0.091
+illum 1
+
+newmtl red
+Kd 0.63 0.065 0.05
+illum 1
+
+newmtl light
+Kd 0.78 0.78 0.78
+Ke 17 12 4
+illum 1
+"""
+SPHERE_MATERIALS = """
+newmtl mirror
+Kd 0 0 0
+Ks 0.95 0.95 0.95
+illum 5
+
+newmtl glass
+Kd 0 0 0
+Tf 1 1 1
+Ni 1.5
+illum 7
+"""
+RADIUS = 100
+# They hang half a millimetre above the floor: a sphere that touches it would meet it in a vertex.
+SPHERES = [("mirror_sphere", "mirror", (388, 100.5, 370)), ("glass_sphere", "glass", (168, 100.5, 190))]
+SUBDIVISIONS = 4  # 20 * 4**4 triangles
+
+
+def room_lines(mtl):
+    lines = SOURCE + [f"mtllib {mtl}"]
+    lines += [f"v {x:g} {y:g} {z:g}" for x, y, z in ROOM_VERTICES]
+    for name, material, faces in ROOM:
+        lines += [f"o {name}", f"usemtl {material}"]
+        lines += ["f " + " ".join(map(str, face)) for face in faces]
+    return lines
+
+
+def block_lines():
+    lines = []
+    for name, height, corners in BLOCKS:
+        assert signed_area(corners) < 0, "the top must look up"
+        lines += [f"o {name}", "usemtl white"]
+        lines += [f"v {x:g} {height:g} {z:g}" for x, z in corners]
+        lines += [f"v {x:g} 0 {z:g}" for x, z in corners]
+        lines.append("f -8 -7 -6 -5")
+        lines += [f"f {i - 8} {i - 4} {(i + 1) % 4 - 4} {(i + 1) % 4 - 8}" for i in range(4)]
+    return lines
+
+
+def signed_area(corners):
+    """In the (x, z) plane; negative when the corners run counter-clockwise seen from above (+y), where z points down."""
+    return sum(x0 * z1 - x1 * z0 for (x0, z0), (x1, z1) in zip(corners, corners[1:] + corners[:1])) / 2
+
+
+def icosphere(subdivisions):
+    """Unit directions and outward triangles: an icosahedron, each triangle split into four again and again."""
+    golden = (1 + math.sqrt(5)) / 2
+    points = [(-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0), (0, -1, golden), (0, 1, golden),
+              (0, -1, -golden), (0, 1, -golden), (golden, 0, -1), (golden, 0, 1), (-golden, 0, -1), (-golden, 0, 1)]
+    points = [unit(p) for p in points]
+    triangles = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2),
+                 (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11),
+                 (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    for _ in range(subdivisions):
+        middles = {}
+
+        def middle(a, b):
+            key = (min(a, b), max(a, b))
+            if key not in middles:
+                middles[key] = len(points)
+                points.append(unit(tuple(p + q for p, q in zip(points[a], points[b]))))
+            return middles[key]
+
+        split = []
+        for a, b, c in triangles:
+            ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
+            split += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        triangles = split
+    return points, triangles
+
+
+def unit(vector):
+    length = math.sqrt(sum(x * x for x in vector))
+    return tuple(x / length for x in vector)
+
+
+def number(value, decimals):
+    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def sphere_lines():
+    points, triangles = icosphere(SUBDIVISIONS)
+    lines = ["# Normals of both spheres"]
+    lines += ["vn " + " ".join(number(x, 6) for x in point) for point in points]
+    first = len(ROOM_VERTICES) + 1
+    for name, material, centre in SPHERES:
+        lines += [f"o {name}", f"usemtl {material}"]
+        lines += ["v " + " ".join(number(c + RADIUS * x, 4) for c, x in zip(centre, point)) for point in points]
+        lines += ["f " + " ".join(f"{first + i}//{i + 1}" for i in triangle) for triangle in triangles]
+        first += len(points)
+    return lines
+
+
+def main():
+    folder = pathlib.Path(__file__).parent
+    (folder / "cornell_box.mtl").write_text(ROOM_MATERIALS)
+    (folder / "cornell_box.obj").write_text("\n".join(room_lines("cornell_box.mtl") + block_lines()) + "\n")
+    (folder / "cornell_spheres.mtl").write_text(ROOM_MATERIALS + SPHERE_MATERIALS)
+    (folder / "cornell_spheres.obj").write_text("\n".join(room_lines("cornell_spheres.mtl") + sphere_lines()) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,3 @@
+#include "pathtracer/camera.hpp"
+
+#include <doctest/doctest.h>

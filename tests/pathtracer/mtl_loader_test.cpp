@@ -1,0 +1,103 @@
+#include "pathtracer/mtl_loader.hpp"
+
+#include <doctest/doctest.h>
+
+#include "pathtracer/error.hpp"
+#include "tests/pathtracer/scratch_folder.hpp"
+
+using namespace tandem::pathtracer;
+using tandem::test::ScratchFolder;
+
+namespace {
+
+struct Loaded {
+  std::vector<NamedMaterial> materials;
+  std::vector<std::string> warnings;
+};
+
+Loaded load(std::string_view text) {
+  const ScratchFolder folder;
+  Loaded loaded;
+  loaded.materials = load_mtl(folder.write("test.mtl", text), loaded.warnings);
+  return loaded;
+}
+
+std::string error_of(std::string_view text) {
+  try {
+    load(text);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("illum chooses the material model") {
+  const std::vector<MaterialModel> expected = {
+      MaterialModel::diffuse,    MaterialModel::diffuse,    MaterialModel::diffuse,    MaterialModel::mirror,
+      MaterialModel::dielectric, MaterialModel::mirror,     MaterialModel::dielectric, MaterialModel::dielectric,
+      MaterialModel::mirror,     MaterialModel::dielectric, MaterialModel::diffuse};
+  for (std::size_t illum = 0; illum <= 10; ++illum) {
+    const Loaded loaded = load("newmtl m\nNi 1.5\nillum " + std::to_string(illum) + "\n");
+    REQUIRE(loaded.materials.size() == 1);
+    CHECK(loaded.materials[0].material.model == expected[illum]);
+  }
+  CHECK(load("newmtl m\n").materials.at(0).material.model == MaterialModel::diffuse);
+  CHECK(contains(error_of("newmtl m\nillum 11\n"), "test.mtl:2: "));
+  CHECK(contains(error_of("newmtl m\nillum x\n"), "'x'"));
+}
+
+TEST_CASE("Each material starts from the defaults, and reads its own numbers") {
+  const Loaded loaded = load(
+      "newmtl glass\r\nKd .1 .2 .3 # comment\r\nKs 0.5\r\nKe +1 2 3e1\r\nTf 0.9 0.8 0.7\r\nNi 1.33\r\nillum 7\r\n"
+      "newmtl   default one \nTf 0 0 0\n");
+  REQUIRE(loaded.materials.size() == 2);
+  const GpuMaterial& glass = loaded.materials[0].material;
+  CHECK(glass.base_color == glm::vec3(0.1f, 0.2f, 0.3f));
+  CHECK(glass.reflectance == glm::vec3(0.5f));
+  CHECK(glass.emission == glm::vec3(1, 2, 30));
+  CHECK(glass.transmittance == glm::vec3(0.9f, 0.8f, 0.7f));
+  CHECK(glass.ior == 1.33f);
+  CHECK(loaded.materials[1].name == "default one");
+  CHECK(loaded.materials[1].material.base_color == glm::vec3(0.5f));
+  CHECK(loaded.materials[1].material.emission == glm::vec3(0));
+  CHECK(loaded.materials[1].material.transmittance == glm::vec3(1));
+  CHECK(loaded.warnings.empty());
+}
+
+TEST_CASE("A dielectric without an index of refraction is window glass, with a warning") {
+  for (const char* text : {"newmtl m\nillum 4\nNi 0\n", "newmtl m\nillum 6\n"}) {
+    const Loaded loaded = load(text);
+    CHECK(loaded.materials.at(0).material.ior == 1.5f);
+    CHECK(loaded.warnings.size() == 1);
+  }
+  CHECK(load("newmtl m\nillum 4\nNi 1\n").materials.at(0).material.ior == 1);
+  CHECK(contains(error_of("newmtl m\nillum 4\nNi -1\n"), "test.mtl:3: "));
+}
+
+TEST_CASE("Textures, gains and repeated names are one warning each, whatever their number") {
+  const Loaded loaded = load(
+      "newmtl a\nmap_Kd a.png\nmap_Bump b.png\nKd 2 0 0\nnewmtl b\nmap_Kd c.png\nbump d.png\nnewmtl a\nKd 0.1 0 0\n");
+  CHECK(loaded.materials.size() == 2);
+  CHECK(loaded.materials.at(0).material.base_color == glm::vec3(2, 0, 0));
+  REQUIRE(loaded.warnings.size() == 3);
+  CHECK(contains(loaded.warnings[0], "bump, map_Bump, map_Kd"));
+  CHECK(contains(loaded.warnings[1], "material a"));
+  CHECK(contains(loaded.warnings[2], "material a"));
+}
+
+TEST_CASE("What cannot be meant is an error that names the line") {
+  CHECK(contains(error_of("newmtl a\nKd nan 0 0\n"), "test.mtl:2: "));
+  CHECK(contains(error_of("newmtl a\nKd -1 0 0\n"), "test.mtl:2: "));
+  CHECK(contains(error_of("newmtl a\nKe 1e39 0 0\n"), "test.mtl:2: "));
+  CHECK(contains(error_of("newmtl a\n\nKd 0.5 0.5"), "test.mtl:3: "));
+  CHECK(contains(error_of("newmtl a\nKd spectral white.rfl\n"), "'spectral'"));
+  CHECK(contains(error_of("newmtl\n"), "test.mtl:1: "));
+  CHECK(contains(error_of("Kd 1 1 1\n"), "before the first newmtl"));
+  CHECK(contains(error_of(""), "is empty"));
+  CHECK(contains(error_of(std::string("newmtl a\0b", 10)), "is no text"));
+  CHECK(load("# nothing\n").materials.empty());
+}
