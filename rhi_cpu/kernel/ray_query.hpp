@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "rhi_cpu/kernel/trace.hpp"
@@ -72,6 +73,16 @@ TANDEM_RAY_QUERY_INLINE void rayQueryInitializeEXT(rayQueryEXT& query, accelerat
   query.state = meets_anything ? RayQueryState::initialized : RayQueryState::complete;
 }
 
+/// A copy of a ray, written as vectors whatever registers its members are in.
+TANDEM_RAY_QUERY_INLINE Ray vector_copy(const Ray& ray) {
+  return std::bit_cast<Ray>(RayVectors{
+      .origin = FloatVector{ray.origin[0], ray.origin[1], ray.origin[2], ray.t_min},
+      .direction = FloatVector{ray.direction[0], ray.direction[1], ray.direction[2], ray.t_max},
+      .flags = ray.flags,
+      .mask = ray.mask,
+  });
+}
+
 /// Whether some hit of the ray could need the shader's confirmation.
 TANDEM_RAY_QUERY_INLINE bool can_meet_candidates(const TopLevel& scene, uint flags) {
   if ((flags & (ray_flag_opaque | ray_flag_cull_no_opaque)) != 0) return false;
@@ -85,7 +96,7 @@ TANDEM_RAY_QUERY_INLINE bool rayQueryProceedEXT(rayQueryEXT& query) {
   if (state == RayQueryState::complete || state == RayQueryState::confirmed) return false;
 
   const TopLevel& scene = *query.scene;
-  const Ray ray = query.ray;
+  const Ray ray = vector_copy(query.ray);
   Hit hit;
   if (!can_meet_candidates(scene, ray.flags)) {
     if ((ray.flags & ray_flag_terminate_on_first_hit) != 0) {
@@ -124,7 +135,7 @@ TANDEM_RAY_QUERY_INLINE void rayQueryConfirmIntersectionEXT(rayQueryEXT& query) 
 TANDEM_RAY_QUERY_INLINE Hit intersection(rayQueryEXT& query, bool committed) {
   if (!committed) return query.candidate;
   if (query.committed_is_unknown) [[unlikely]] {
-    const Ray ray = query.ray;
+    const Ray ray = vector_copy(query.ray);
     Hit hit;
     if (query.scene->functions->closest(*query.scene, ray, hit)) query.committed = hit;
     query.committed_is_unknown = false;

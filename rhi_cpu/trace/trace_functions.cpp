@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <tuple>
 
@@ -29,14 +30,13 @@ float last_included(float t_max) {
 }
 
 void set_ray(const Ray& ray, float t_first, float t_last, RTCRay& embree_ray) {
-  embree_ray.org_x = ray.origin[0];
-  embree_ray.org_y = ray.origin[1];
-  embree_ray.org_z = ray.origin[2];
-  embree_ray.tnear = t_first;
-  embree_ray.dir_x = ray.direction[0];
-  embree_ray.dir_y = ray.direction[1];
-  embree_ray.dir_z = ray.direction[2];
-  embree_ray.time = 0;
+  auto vectors = std::bit_cast<kernel::RayVectors>(ray);
+  vectors.origin[3] = t_first;
+  vectors.direction[3] = 0;  // time
+  static_assert(offsetof(RTCRay, tnear) == offsetof(RTCRay, org_x) + 12 &&
+                offsetof(RTCRay, time) == offsetof(RTCRay, dir_x) + 12);
+  *reinterpret_cast<kernel::FloatVector*>(&embree_ray.org_x) = vectors.origin;
+  *reinterpret_cast<kernel::FloatVector*>(&embree_ray.dir_x) = vectors.direction;
   embree_ray.tfar = t_last;
   embree_ray.mask = ray.mask;
   embree_ray.id = 0;
