@@ -22,7 +22,7 @@ enum RayFlag : std::uint32_t {
 
 /// A ray in world space, as rayQueryInitializeEXT receives it. A triangle is hit at t_min < t < t_max, both ends
 /// excluded (Vulkan specification, "Ray Intersection Candidate Determination").
-struct Ray {
+struct alignas(16) Ray {
   float origin[3];
   float t_min;
   float direction[3];  ///< not normalised: t counts in its lengths
@@ -31,9 +31,9 @@ struct Ray {
   std::uint32_t mask;  ///< 8 bits
 };
 
-/// Four floats at any address. A ray travels as two of them, because Embree loads it so: a vector load that follows
+/// Four floats. A ray travels as two of them, because Embree loads it so: a vector load that follows
 /// scalar stores waits for them, which costs a tenth of a simple ray.
-using FloatVector = float __attribute__((vector_size(16), aligned(4)));
+using FloatVector = float __attribute__((vector_size(16)));
 
 struct RayVectors {
   FloatVector origin;     ///< and t_min
