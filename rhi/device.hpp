@@ -63,12 +63,12 @@ struct DeviceInfo {
 };
 
 struct DeviceDesc {
-  std::string name = "cpu";            ///< "cpu", "vulkan" (the first that qualifies), "vulkan:N"
-  bool driver_validation = false;      ///< Vulkan: the Khronos validation layer, an error when it is not installed
-  MessageCallback on_message;          ///< warnings, driver and validation messages
-  std::uint32_t thread_count = 0;      ///< CPU: worker threads, 0 for all that the machine has
-  std::filesystem::path kernel_cache;  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
-                                       ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem
+  std::string name = "cpu";                 ///< "cpu", "vulkan" (the first that qualifies), "vulkan:N"
+  bool driver_validation = false;           ///< Vulkan: the Khronos validation layer, an error when it is not installed
+  MessageCallback on_message = {};          ///< warnings, driver and validation messages
+  std::uint32_t thread_count = 0;           ///< CPU: worker threads, 0 for all that the machine has
+  std::filesystem::path kernel_cache = {};  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
+                                            ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem
 };
 
 /// A device and all that is made from it. Objects may be created from several threads at once; a command list is
