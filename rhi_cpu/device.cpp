@@ -113,7 +113,8 @@ rhi::Limits limits() {
 DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled)
     : info(device_info()),
       workers(desc.thread_count),
-      embree(desc.on_message, workers.thread_count()),
+      // A thread count given to Embree would bound oneTBB in the whole program, so builds use what the machine has.
+      embree(desc.on_message),
       kernels(std::move(precompiled), desc.kernel_cache, desc.on_message) {}
 
 rhi::DeviceInfo device_info() {

@@ -54,6 +54,4 @@ void Workers::for_each_range(std::uint64_t count,
   });
 }
 
-void Workers::run(const std::function<void()>& work) { arena_.execute(work); }
-
 }  // namespace tandem::cpu

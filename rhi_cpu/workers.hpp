@@ -22,9 +22,6 @@ class Workers {
   /// point rounds to nearest and keeps denormals, whatever the calling program has set.
   void for_each_range(std::uint64_t count, const std::function<void(std::uint64_t first, std::uint64_t end)>& work);
 
-  /// Calls `work` once, so that what it does in parallel through oneTBB uses these threads only.
-  void run(const std::function<void()>& work);
-
  private:
   /// More threads than processors need oneTBB's leave, which holds for the whole program while the device lives.
   std::optional<tbb::global_control> permission_;
