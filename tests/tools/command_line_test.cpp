@@ -1,0 +1,134 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "tests/tools/process.hpp"
+
+namespace tandem::test {
+namespace {
+
+const std::string box = TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj";
+
+TEST_CASE("every command explains itself and all its options") {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
+      {"devices", {"--json"}},
+      {"render",
+       {"SCENE", "--output", "--device", "--size", "--spp", "--depth", "--seed", "--camera-position", "--camera-target",
+        "--fov", "--background", "--threads", "--validation", "Examples"}},
+      {"diff",
+       {"SCENE", "--a", "--b", "--json", "--out", "--size", "--spp", "--depth", "--seed", "--camera-position",
+        "--min-within-1e3", "--min-bit-equal", "--max-mean-difference", "--max-non-finite", "Exit code", "Examples"}},
+      {"generate", {"--triangles", "--output", "Example"}},
+      {"bench", {"SCENE", "--device", "--repeat", "--json", "--size", "--spp", "Example"}}};
+  const Outcome overview = run_tandem({"--help"});
+  CHECK(overview.exit_code == 0);
+  for (const auto& [command, words] : commands) {
+    CAPTURE(command);
+    CHECK(overview.output.find("\n  " + command) != std::string::npos);
+    const Outcome help = run_tandem({command, "--help"});
+    CHECK(help.exit_code == 0);
+    CHECK(help.errors.empty());
+    for (const std::string& word : words) {
+      CAPTURE(word);
+      CHECK(help.output.find(word) != std::string::npos);
+    }
+  }
+  CHECK(run_tandem({"--version"}).output == "tandem " TANDEM_VERSION "\n");
+}
+
+struct BadCommandLine {
+  std::vector<std::string> arguments;
+  std::string sentence;  ///< what the one line of standard error must contain
+};
+
+TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file") {
+  const std::vector<BadCommandLine> bad = {
+      {{}, "a command is required"},
+      {{"paint"}, "'paint' is not a command"},
+      {{"render"}, "SCENE is required"},
+      {{"render", box}, "--output is required"},
+      {{"render", box, "-o", "x.png", "--size", "0"}, "--size: '0' is not a size"},
+      {{"render", box, "-o", "x.png", "--size", "0x0"}, "--size: '0x0' is not a size"},
+      {{"render", box, "-o", "x.png", "--size", "16x"}, "--size: '16x' is not a size"},
+      {{"render", box, "-o", "x.png", "--size", "16x16x16"}, "--size: '16x16x16' is not a size"},
+      {{"render", box, "-o", "x.png", "--size", "-16x16"}, "--size: '-16x16' is not a size"},
+      {{"render", box, "-o", "x.png", "--size", "65536x65536"}, "at most 268435456 pixels"},
+      {{"render", box, "-o", "x.png", "--size", "4294967297x4294967297"}, "is not a size"},
+      {{"render", box, "-o", "x.png", "--spp", "0"}, "--spp: '0' is not a whole number from 1"},
+      {{"render", box, "-o", "x.png", "--spp", "-4"}, "--spp: '-4' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--spp", "4.5"}, "--spp: '4.5' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--spp", "many"}, "--spp: 'many' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--spp", ""}, "--spp: '' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--spp"}, "--spp"},
+      {{"render", box, "-o", "x.png", "--depth", "0"}, "--depth: '0' is not a whole number from 1"},
+      {{"render", box, "-o", "x.png", "--seed", "4294967296"}, "--seed: '4294967296' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--threads", "-1"}, "--threads: '-1' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--fov", "180"}, "--fov: '180' is not a number from 1 to 175"},
+      {{"render", box, "-o", "x.png", "--fov", "nan"}, "--fov: 'nan' is not a number"},
+      {{"render", box, "-o", "x.png", "--camera-position", "1,2"}, "--camera-position: '1,2' is not three numbers"},
+      {{"render", box, "-o", "x.png", "--camera-target", "1,2,inf"}, "--camera-target: '1,2,inf' is not three numbers"},
+      {{"render", box, "-o", "x.png", "--background", "-1,0,0"}, "that are at least 0"},
+      {{"render", box, "-o", "x.png", "--camera-position", "1,1,1", "--camera-target", "1,1,1"}, "camera"},
+      {{"render", box, "-o", "x.png", "--colour", "red"}, "--colour"},
+      {{"render", box, box, "-o", "x.png"}, "not expected"},
+      {{"render", box, "-o", "x.jpg"}, "x.jpg"},
+      {{"render", box, "-o", "x"}, "'x'"},
+      {{"render", box, "-o", "missing/x.png"}, "missing"},
+      {{"render", box, "-o", "."}, "'.'"},
+      {{"render", "missing.obj", "-o", "x.png"}, "missing.obj"},
+      {{"render", ".", "-o", "x.png"}, "'.'"},
+      {{"render", box, "-o", "x.png", "--device", "teapot"}, "teapot"},
+      {{"render", box, "-o", "x.png", "--device", "vulkan:99"}, "vulkan:99"},
+      {{"diff", box, "--a", "cpu", "--b", "teapot", "--out", "new"}, "teapot"},
+      {{"diff", "missing.obj", "--out", "new"}, "missing.obj"},
+      {{"diff", box, "--a", "cpu", "--b", "cpu", "--json", "missing/diff.json", "--out", "new"}, "missing"},
+      {{"diff", box, "--a", "cpu", "--b", "cpu", "--out", box}, "cornell_box.obj"},
+      {{"diff", box, "--a", "cpu", "--b", "cpu", "--min-bit-equal", "1.5"},
+       "--min-bit-equal: '1.5' is not a number from 0 to 1"},
+      {{"bench", box}, "--device is required"},
+      {{"bench", box, "--device", "cpu", "--repeat", "0"}, "--repeat: '0' is not a whole number from 1"},
+      {{"bench", box, "--device", "cpu", "--json", "/dev/null"}, "/dev/null"},
+      {{"generate", "--triangles", "3", "-o", "x.obj"}, "--triangles: '3' is not a whole number"},
+      {{"generate", "--triangles", "100", "-o", "missing/x.obj"}, "missing"},
+  };
+  const TemporaryFolder folder;
+  for (const BadCommandLine& line : bad) {
+    std::string words;
+    for (const std::string& word : line.arguments) words += word + " ";
+    CAPTURE(words);
+    const Outcome outcome = run_tandem(line.arguments, {.folder = folder.path()});
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.output.empty());
+    CHECK(outcome.errors.starts_with("tandem: "));
+    CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+    CHECK(outcome.errors.find(line.sentence) != std::string::npos);
+    CAPTURE(outcome.errors);
+    CHECK(folder.names().empty());
+  }
+}
+
+TEST_CASE("a scene that cannot be used is one sentence and exit code 2") {
+  const TemporaryFolder folder;
+  const std::vector<std::pair<std::string, std::string>> scenes = {
+      {"empty.obj", ""},
+      {"no_triangles.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"},
+      {"nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
+      {"index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"},
+      {"no_material.obj", "mtllib absent.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
+  for (const auto& [name, text] : scenes) {
+    CAPTURE(name);
+    write_text(folder.path() / name, text);
+    const Outcome outcome = run_tandem({"render", name, "-o", "x.png"}, {.folder = folder.path()});
+    CAPTURE(outcome.errors);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.errors.find(name) != std::string::npos);
+    CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
+    std::filesystem::remove(folder.path() / name);
+    CHECK(folder.names().empty());
+  }
+}
+
+}  // namespace
+}  // namespace tandem::test
