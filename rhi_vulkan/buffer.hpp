@@ -1,0 +1,34 @@
+#pragma once
+
+#include "rhi/buffer.hpp"
+#include "rhi_vulkan/context.hpp"
+
+namespace tandem::vulkan {
+
+/// A VkBuffer and the memory under it.
+struct BackedBuffer {
+  MemoryAllocation memory;
+  vk::raii::Buffer handle = nullptr;  // destroyed before its memory
+};
+
+/// Throws rhi::Error(out_of_memory), after having let go of what finished submissions held.
+BackedBuffer make_backed_buffer(Context& context, std::uint64_t size, vk::BufferUsageFlags usage, MemoryKind kind,
+                                const std::string& label);
+
+/// Of a buffer with usage eShaderDeviceAddress.
+std::uint64_t device_address(const Context& context, const BackedBuffer& buffer);
+
+class Buffer final : public rhi::Buffer {
+ public:
+  Buffer(ContextHandle context, const rhi::BufferDesc& desc);
+
+  std::uint64_t device_address() const override;
+  const ContextHandle& context() const noexcept { return context_; }
+  vk::Buffer handle() const { return *buffer_.handle; }
+
+ private:
+  ContextHandle context_;
+  BackedBuffer buffer_;
+};
+
+}  // namespace tandem::vulkan

@@ -1,0 +1,174 @@
+#include "rhi_vulkan/command_list.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "rhi/validation.hpp"
+#include "rhi_vulkan/bind_group.hpp"
+#include "rhi_vulkan/compute_pipeline.hpp"
+
+namespace tandem::vulkan {
+namespace {
+
+/// Uploads go in pieces of this size, so that staging never needs one allocation as large as the buffer.
+constexpr std::uint64_t upload_piece = 32ull << 20;
+constexpr std::uint64_t staging_alignment = 16;
+/// Builds run side by side until their scratch memory reaches this; then a barrier lets it be used again.
+constexpr std::uint64_t most_scratch = 256ull << 20;
+
+Access access(const rhi::BufferRange& range, bool writes) {
+  return {range.buffer.get(), range.offset, range.offset + range.resolved_size(), writes};
+}
+
+}  // namespace
+
+CommandList::Recording::Recording(CommandBuffer command_buffer)
+    : commands(std::move(command_buffer)),
+      staging(vk::BufferUsageFlagBits::eTransferSrc, MemoryKind::upload, "upload staging"),
+      scratch(vk::BufferUsageFlagBits::eStorageBuffer | vk::BufferUsageFlagBits::eShaderDeviceAddress,
+              MemoryKind::device, "build scratch") {}
+
+CommandList::CommandList(ContextHandle context, std::string label)
+    : rhi::CommandList(std::move(label)),
+      context_(std::move(context)),
+      recording_(std::make_shared<Recording>(begin_command_buffer(*context_, this->label()))) {}
+
+CommandList::Recording& CommandList::recording() {
+  if (recording_ == nullptr)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "the command list was already submitted");
+  return *recording_;
+}
+
+void CommandList::order(CommandKind kind, std::span<const Access> accesses) {
+  if (!dependencies_.needs_barrier(kind, accesses)) return;
+  full_barrier(recording_->commands.handle);
+  recording_->scratch.reuse();
+}
+
+void CommandList::upload(const rhi::BufferHandle& buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
+  Recording& recording = this->recording();
+  rhi::validation::check_upload(*this, buffer, offset, bytes.size());
+  const Buffer& target = own<Buffer>(buffer, context_, label(), "buffer of an upload");
+  if (bytes.empty()) return;
+  recording.resources.push_back(buffer);
+  order(CommandKind::transfer, std::array{access({buffer, offset, bytes.size()}, true)});
+  while (!bytes.empty()) {
+    const std::uint64_t size = std::min<std::uint64_t>(bytes.size(), upload_piece);
+    const TransientMemory::Piece piece = recording.staging.allocate(*context_, size, staging_alignment);
+    std::memcpy(piece.mapped, bytes.data(), size);
+    recording.commands.handle.copyBuffer(piece.buffer, target.handle(),
+                                         vk::BufferCopy{.srcOffset = piece.offset, .dstOffset = offset, .size = size});
+    bytes = bytes.subspan(size);
+    offset += size;
+  }
+}
+
+void CommandList::copy(const rhi::BufferRange& source, const rhi::BufferRange& destination) {
+  Recording& recording = this->recording();
+  rhi::validation::check_copy(*this, source, destination);
+  const Buffer& from = own<Buffer>(source.buffer, context_, label(), "source of a copy");
+  const Buffer& to = own<Buffer>(destination.buffer, context_, label(), "destination of a copy");
+  recording.resources.push_back(source.buffer);
+  recording.resources.push_back(destination.buffer);
+  order(CommandKind::transfer, std::array{access(source, false), access(destination, true)});
+  recording.commands.handle.copyBuffer(
+      from.handle(), to.handle(),
+      vk::BufferCopy{.srcOffset = source.offset, .dstOffset = destination.offset, .size = source.resolved_size()});
+}
+
+void CommandList::fill(const rhi::BufferRange& range, std::uint32_t value) {
+  Recording& recording = this->recording();
+  rhi::validation::check_fill(*this, range);
+  const Buffer& target = own<Buffer>(range.buffer, context_, label(), "buffer of a fill");
+  recording.resources.push_back(range.buffer);
+  order(CommandKind::transfer, std::array{access(range, true)});
+  recording.commands.handle.fillBuffer(target.handle(), range.offset, range.resolved_size(), value);
+}
+
+void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& structure,
+                                     const rhi::BottomLevelDesc& desc) {
+  recording();
+  rhi::validation::check(desc, context_->physical.info);
+  if (structure == nullptr) rhi::validation::check_build(*this, structure, rhi::BottomLevelDesc(), desc);
+  auto& target = own<AccelerationStructure>(structure, context_, label(), "acceleration structure");
+  rhi::validation::check_build(*this, structure, target.bottom_level_desc(), desc);
+  build(structure, target, build_input(desc, context_, target.label()), CommandKind::bottom_level_build);
+}
+
+void CommandList::build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
+  recording();
+  rhi::validation::check(desc, context_->physical.info);
+  if (structure == nullptr) rhi::validation::check_build(*this, structure, rhi::TopLevelDesc(), desc);
+  auto& target = own<AccelerationStructure>(structure, context_, label(), "acceleration structure");
+  rhi::validation::check_build(*this, structure, target.top_level_desc(), desc);
+  build(structure, target, build_input(desc, context_, target.label()), CommandKind::exclusive);
+}
+
+void CommandList::build(const rhi::AccelerationStructureHandle& handle, AccelerationStructure& structure,
+                        const BuildInput& input, CommandKind kind) {
+  Recording& recording = *recording_;
+  if (recording.scratch.used() + structure.scratch_size() > most_scratch) dependencies_.require_barrier();
+  order(kind, std::array{Access{&structure, 0, 1, true}});
+  const TransientMemory::Piece scratch =
+      recording.scratch.allocate(*context_, structure.scratch_size(), context_->physical.scratch_alignment);
+  recording.resources.push_back(handle);
+  recording.resources.insert(recording.resources.end(), input.buffers.begin(), input.buffers.end());
+  vk::AccelerationStructureBuildGeometryInfoKHR info = input.info();
+  info.dstAccelerationStructure = structure.handle();
+  info.scratchData.deviceAddress = scratch.device_address;
+  const vk::AccelerationStructureBuildRangeInfoKHR* const ranges = input.ranges.data();
+  recording.commands.handle.buildAccelerationStructuresKHR(info, ranges);
+}
+
+void CommandList::dispatch(const rhi::DispatchDesc& desc) {
+  Recording& recording = this->recording();
+  rhi::validation::check(desc, context_->physical.info);
+  const auto& pipeline = own<ComputePipeline>(desc.pipeline, context_, label(), "pipeline");
+  std::vector<vk::DescriptorSet> sets;
+  for (const rhi::BindGroupHandle& group : desc.bind_groups)
+    sets.push_back(own<BindGroup>(group, context_, label(), "bind group").handle());
+
+  recording.resources.push_back(desc.pipeline);
+  recording.resources.insert(recording.resources.end(), desc.bind_groups.begin(), desc.bind_groups.end());
+  order(CommandKind::exclusive, {});
+  const vk::raii::CommandBuffer& commands = recording.commands.handle;
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
+  for (std::size_t i = 0; i < sets.size(); ++i) {
+    const std::uint32_t set = desc.bind_groups[i]->desc().set;
+    if (pipeline.uses_set(set))
+      commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipeline.layout(), set, sets[i], nullptr);
+  }
+  if (!desc.push_constants.empty())
+    commands.pushConstants<std::byte>(
+        pipeline.layout(), vk::ShaderStageFlagBits::eCompute, 0,
+        {static_cast<std::uint32_t>(desc.push_constants.size()), desc.push_constants.data()});
+  commands.dispatch(desc.workgroup_count[0], desc.workgroup_count[1], desc.workgroup_count[2]);
+}
+
+void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) {
+  Recording& recording = this->recording();
+  rhi::validation::check_timestamp(*this, pool, index);
+  const auto& queries = own<QueryPool>(pool, context_, label(), "query pool");
+  recording.resources.push_back(pool);
+  timestamps_.emplace_back(std::static_pointer_cast<QueryPool>(pool), index);
+  recording.commands.handle.resetQueryPool(queries.handle(), index, 1);
+  // The bottom of the pipe is reached when all commands before are done; the barrier keeps the next ones from
+  // beginning.
+  recording.commands.handle.writeTimestamp(vk::PipelineStageFlagBits::eBottomOfPipe, queries.handle(), index);
+  dependencies_.require_barrier();
+}
+
+std::uint64_t CommandList::submit() {
+  Recording& recording = this->recording();
+  return translating_errors(label(), "submit the command list", [&] {
+    recording.commands.handle.end();
+    const vk::CommandBuffer commands = *recording.commands.handle;
+    const std::uint64_t number = context_->queue.submit(commands, std::exchange(recording_, nullptr));
+    for (const auto& [pool, index] : timestamps_) pool->mark_submitted(index);
+    timestamps_.clear();
+    return number;
+  });
+}
+
+}  // namespace tandem::vulkan

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "rhi/command_list.hpp"
+#include "rhi_vulkan/acceleration_structure.hpp"
+#include "rhi_vulkan/command_buffer.hpp"
+#include "rhi_vulkan/dependency_tracker.hpp"
+#include "rhi_vulkan/query_pool.hpp"
+#include "rhi_vulkan/transient_memory.hpp"
+
+namespace tandem::vulkan {
+
+class CommandList final : public rhi::CommandList {
+ public:
+  CommandList(ContextHandle context, std::string label);
+
+  void upload(const rhi::BufferHandle& buffer, std::uint64_t offset, std::span<const std::byte> bytes) override;
+  void copy(const rhi::BufferRange& source, const rhi::BufferRange& destination) override;
+  void fill(const rhi::BufferRange& range, std::uint32_t value) override;
+  void build_bottom_level(const rhi::AccelerationStructureHandle& structure, const rhi::BottomLevelDesc& desc) override;
+  void build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) override;
+  void dispatch(const rhi::DispatchDesc& desc) override;
+  void write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) override;
+
+  const ContextHandle& context() const noexcept { return context_; }
+  /// Ends the recording, submits it and returns the submission's number.
+  std::uint64_t submit();
+
+ private:
+  /// What the device needs until the commands have executed.
+  struct Recording {
+    explicit Recording(CommandBuffer command_buffer);
+
+    CommandBuffer commands;
+    TransientMemory staging;
+    TransientMemory scratch;
+    std::vector<std::shared_ptr<const void>> resources;
+  };
+
+  /// Throws rhi::Error(invalid_argument) once the list was submitted.
+  Recording& recording();
+  /// A barrier where the command that follows needs one.
+  void order(CommandKind kind, std::span<const Access> accesses);
+  void build(const rhi::AccelerationStructureHandle& handle, AccelerationStructure& structure, const BuildInput& input,
+             CommandKind kind);
+
+  ContextHandle context_;
+  std::shared_ptr<Recording> recording_;  // empty once submitted
+  DependencyTracker dependencies_;
+  std::vector<std::pair<std::shared_ptr<QueryPool>, std::uint32_t>> timestamps_;
+};
+
+}  // namespace tandem::vulkan

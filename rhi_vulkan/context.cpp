@@ -1,0 +1,44 @@
+#include "rhi_vulkan/context.hpp"
+
+#include <utility>
+
+namespace tandem::vulkan {
+namespace {
+
+vk::raii::Device make_device(const PhysicalDevice& physical) {
+  vk::PhysicalDeviceRayQueryFeaturesKHR ray_query = {.rayQuery = VK_TRUE};
+  vk::PhysicalDeviceAccelerationStructureFeaturesKHR acceleration_structure = {
+      .pNext = physical.features.ray_query ? &ray_query : nullptr, .accelerationStructure = VK_TRUE};
+  vk::PhysicalDeviceVulkan12Features vulkan12 = physical.features.vulkan12;
+  vulkan12.pNext = &acceleration_structure;
+  vk::PhysicalDeviceVulkan11Features vulkan11 = physical.features.vulkan11;
+  vulkan11.pNext = &vulkan12;
+  const vk::PhysicalDeviceFeatures2 features = {.pNext = &vulkan11, .features = physical.features.core};
+
+  const float priority = 1;
+  const vk::DeviceQueueCreateInfo queue = {
+      .queueFamilyIndex = physical.queue_family, .queueCount = 1, .pQueuePriorities = &priority};
+  const vk::DeviceCreateInfo info = {.pNext = &features,
+                                     .queueCreateInfoCount = 1,
+                                     .pQueueCreateInfos = &queue,
+                                     .enabledExtensionCount = static_cast<std::uint32_t>(physical.extensions.size()),
+                                     .ppEnabledExtensionNames = physical.extensions.data()};
+  return translating_errors(physical.info.name, "create the device",
+                            [&] { return physical.handle.createDevice(info); });
+}
+
+}  // namespace
+
+Context::Context(std::unique_ptr<Instance> owned_instance, PhysicalDevice physical_device)
+    : instance(std::move(owned_instance)),
+      physical(std::move(physical_device)),
+      device(make_device(physical)),
+      memory(device, physical.handle.getMemoryProperties(), physical.max_allocation_size),
+      descriptors(device),
+      queue(device, physical.queue_family) {}
+
+void Context::set_name(vk::ObjectType type, std::uint64_t handle, const std::string& label) const {
+  device.setDebugUtilsObjectNameEXT({.objectType = type, .objectHandle = handle, .pObjectName = label.c_str()});
+}
+
+}  // namespace tandem::vulkan
