@@ -57,10 +57,9 @@ std::string processor_property(std::string_view key) {
   return {};
 }
 
-/// Run-time kernels are for this machine only. Nothing but the entry is visible, so that kernels which are loaded at
-/// the same time cannot replace each other's inline functions.
+/// Those of every kernel, and the machine's own instructions: kernels compiled at run time never leave it.
 std::vector<std::string> options() {
-  std::vector<std::string> all = {"-std=c++20", "-shared", "-fPIC", "-fvisibility=hidden", "-march=native", "-w"};
+  std::vector<std::string> all = {"-shared", "-fPIC", "-march=native"};
   all.insert(all.end(), std::begin(compile_options), std::end(compile_options));
   return all;
 }
@@ -110,7 +109,7 @@ std::string processor_name() { return processor_property("model name"); }
 
 std::string kernel_compile_options() { return fmt::format("{}", fmt::join(options(), " ")); }
 
-std::string compile_kernel(const KernelCompiler& compiler, const fs::path& folder) {
+std::string compile_kernel(const KernelCompiler& compiler, const fs::path& folder, bool debug_info) {
   for (const KernelHeader& header : kernel_headers()) {
     const fs::path path = folder / header.path;
     fs::create_directories(path.parent_path());
@@ -119,6 +118,7 @@ std::string compile_kernel(const KernelCompiler& compiler, const fs::path& folde
   const fs::path library = folder / "kernel.so";
   std::vector<std::string> command = {compiler.path.string()};
   for (std::string& option : options()) command.push_back(std::move(option));
+  if (debug_info) command.emplace_back("-g");
   // GLM is installed with the compiler's own headers or beside them; both are on its default path.
   for (const std::string& argument :
        {std::string("-I"), folder.string(), std::string("-o"), library.string(), (folder / "kernel.cpp").string()})

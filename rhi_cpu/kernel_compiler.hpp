@@ -27,7 +27,9 @@ std::string kernel_compile_options();
 
 /// Compiles `folder`/kernel.cpp to `folder`/kernel.so, with the kernel headers written below `folder`. When the
 /// compiler fails, its messages are in `folder`/compiler.log.
+/// @param debug_info for a source that points a debugger at the shader's own lines
 /// @return "" or the first error that the compiler reports
-std::string compile_kernel(const KernelCompiler& compiler, const std::filesystem::path& folder);
+std::string compile_kernel(const KernelCompiler& compiler, const std::filesystem::path& folder,
+                           bool debug_info = false);
 
 }  // namespace tandem::cpu

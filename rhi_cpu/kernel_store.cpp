@@ -81,7 +81,9 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
   KernelCache& store = cache();
   TemporaryFolder folder = store.make_work_folder(label);
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;
-  const std::string problem = compile_kernel(compiler(label), folder.path());
+  // The translator gives line numbers when the SPIR-V has them.
+  const bool has_lines = translation.source.find("\n#line ") != std::string::npos;
+  const std::string problem = compile_kernel(compiler(label), folder.path(), has_lines);
   if (!problem.empty()) {
     const std::filesystem::path kept = store.keep_failure(std::move(folder), key);
     throw rhi::Error(rhi::ErrorCode::shader_compilation, label,
