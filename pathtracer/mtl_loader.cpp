@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -120,6 +121,14 @@ GpuMaterial material_of(const tinyobj::material_t& source, bool& default_ior_use
   return material;
 }
 
+/// "a, b, c and 5 more"
+std::string abbreviated(const std::set<std::string>& names) {
+  constexpr std::size_t shown = 4;
+  if (names.size() <= shown) return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{} and {} more", fmt::join(names.begin(), std::next(names.begin(), shown), ", "),
+                     names.size() - shown);
+}
+
 }  // namespace
 
 std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vector<std::string>& warnings) {
@@ -133,24 +142,24 @@ std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vect
   if (!reading.inside_material) return {};  // tinyobjloader then gives one that has no name
 
   std::vector<NamedMaterial> materials;
-  std::vector<std::string> bright, without_ior, repeated;
+  std::set<std::string> bright, without_ior, repeated;
   for (const tinyobj::material_t& source : sources) {
     const auto same_name = [&](const NamedMaterial& other) { return other.name == source.name; };
     if (std::any_of(materials.begin(), materials.end(), same_name)) {
-      repeated.push_back(source.name);
+      repeated.insert(source.name);
       continue;
     }
     bool default_ior_used = false;
     const GpuMaterial material = material_of(source, default_ior_used);
-    if (default_ior_used) without_ior.push_back(source.name);
+    if (default_ior_used) without_ior.insert(source.name);
     const bool gains = material.model == MaterialModel::diffuse  ? exceeds_one(material.base_color)
                        : material.model == MaterialModel::mirror ? exceeds_one(material.reflectance)
                                                                  : exceeds_one(material.transmittance);
-    if (gains) bright.push_back(source.name);
+    if (gains) bright.insert(source.name);
     materials.push_back({source.name, material});
   }
-  const auto warn = [&](const auto& what, const char* sentence) {
-    if (!what.empty()) warnings.push_back(fmt::format(fmt::runtime(sentence), path.string(), fmt::join(what, ", ")));
+  const auto warn = [&](const std::set<std::string>& what, const char* sentence) {
+    if (!what.empty()) warnings.push_back(fmt::format(fmt::runtime(sentence), path.string(), abbreviated(what)));
   };
   warn(reading.maps, "{}: textures are not read yet, so {} has no effect");
   warn(bright, "{}: more light leaves than arrives (a factor above 1) at material {}");
