@@ -52,6 +52,12 @@ using mat4x2 = glm::mat<4, 2, float>;
 using mat4x3 = glm::mat<4, 3, float>;
 using mat4x4 = glm::mat<4, 4, float>;
 
+/// Vectors of components without a GLSL name of their own here, such as those of 8, 16 and 64 bits.
+template <int length, typename T>
+using vector = glm::vec<length, T>;
+template <int columns, int rows, typename T>
+using matrix = glm::mat<columns, rows, T>;
+
 /// An array is a value, as in GLSL.
 template <typename T, std::size_t size>
 using Array = std::array<T, size>;

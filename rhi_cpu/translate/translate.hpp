@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "rhi/compute_pipeline.hpp"
+
+/// SPIR-V to C++: one compute shader becomes one C++20 translation unit that includes "rhi_cpu/kernel/kernel.hpp" and
+/// exports one function that returns its kernel::KernelInfo.
+namespace tandem::cpu {
+
+/// Raised whenever the same SPIR-V translates to other C++ than before.
+inline constexpr std::uint32_t translator_version = 1;
+
+struct TranslateOptions {
+  /// Values of specialisation constants, baked in; the others keep their defaults.
+  std::span<const rhi::SpecializationValue> specialization;
+  /// The exported function, extern "C" const tandem::kernel::KernelInfo* entry_symbol().
+  std::string entry_symbol = "tandem_kernel";
+};
+
+struct Translation {
+  std::string source;
+};
+
+/// Translates the compute shader in `spirv`. Floating-point operations keep their order and are never contracted;
+/// integers wrap; every variable without an initialiser starts as zero.
+/// @param label names the shader in errors
+/// Throws rhi::Error: invalid_argument when the words are no valid SPIR-V module or a specialisation value names no
+/// constant, unsupported with the name of the first instruction, capability, execution model, storage class, built-in,
+/// decoration or extended instruction that the CPU device does not handle.
+Translation translate(std::span<const std::uint32_t> spirv, const std::string& label,
+                      const TranslateOptions& options = {});
+
+}  // namespace tandem::cpu
