@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
 #include "rhi_cpu/translate/translate.hpp"
 
@@ -41,8 +41,10 @@ void write(const std::string& path, const std::string& text) {
 std::string embedded_words(const std::vector<std::uint32_t>& words, const std::string& name_space,
                            const std::string& name) {
   std::string text = fmt::format(
-      "#include <cstdint>\n#include <span>\n\nnamespace {} {{\n\nstatic constexpr std::uint32_t words[] = {{", name_space);
-  for (std::size_t i = 0; i < words.size(); ++i) text += fmt::format("{}{:#x},", i % 12 == 0 ? "\n    " : " ", words[i]);
+      "#include <cstdint>\n#include <span>\n\nnamespace {} {{\n\nstatic constexpr std::uint32_t words[] = {{",
+      name_space);
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += fmt::format("{}{:#x},", i % 12 == 0 ? "\n    " : " ", words[i]);
   return text + fmt::format("\n}};\n\nstd::span<const std::uint32_t> {}() {{ return words; }}\n\n}}  // namespace {}\n",
                             name, name_space);
 }

@@ -1,0 +1,107 @@
+#include "rhi_cpu/translate/prepare.hpp"
+
+#include <unordered_map>
+#include <unordered_set>
+
+#include <fmt/format.h>
+#include <spirv-tools/libspirv.hpp>
+#include <spirv-tools/optimizer.hpp>
+#include <spirv_cross/spirv.hpp>
+
+#include "rhi/error.hpp"
+#include "rhi_cpu/translate/supported.hpp"
+
+namespace tandem::cpu {
+namespace {
+
+constexpr std::size_t header_words = 5;
+
+/// Calls visit(instruction) for each instruction of the module.
+template <typename Word, typename Visit>
+void for_each_instruction(std::span<Word> spirv, const Visit& visit) {
+  for (std::size_t i = header_words; i < spirv.size(); i += spirv[i] >> 16) visit(spirv.subspan(i, spirv[i] >> 16));
+}
+
+spv::Op operation(std::span<const std::uint32_t> instruction) { return static_cast<spv::Op>(instruction[0] & 0xffff); }
+
+[[noreturn]] void fail(const std::string& label, const std::string& why) {
+  throw rhi::Error(rhi::ErrorCode::invalid_argument, label, why);
+}
+
+void validate(std::span<const std::uint32_t> spirv, const std::string& label) {
+  spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_6);
+  std::string first_message;
+  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
+    if (first_message.empty()) first_message = message;
+  });
+  spvtools::ValidatorOptions options;
+  options.SetScalarBlockLayout(true);
+  if (!tools.Validate(spirv.data(), spirv.size(), options)) fail(label, "the SPIR-V is not valid: " + first_message);
+}
+
+bool has_specialization(std::span<const std::uint32_t> spirv) {
+  bool found = false;
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    const spv::Op op = operation(i);
+    found |= op >= spv::OpSpecConstantTrue && op <= spv::OpSpecConstantOp;
+  });
+  return found;
+}
+
+std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, const std::string& label,
+                                      std::span<const rhi::SpecializationValue> values) {
+  std::unordered_set<std::uint32_t> declared;
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    if (operation(i) == spv::OpDecorate && i[2] == spv::DecorationSpecId) declared.insert(i[3]);
+  });
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> words;
+  for (const rhi::SpecializationValue& value : values) {
+    if (!declared.contains(value.id))
+      fail(label, fmt::format("the shader has no specialisation constant {}", value.id));
+    words[value.id] = {value.value};
+  }
+  if (!has_specialization(spirv)) return {spirv.begin(), spirv.end()};
+
+  spvtools::Optimizer optimizer(SPV_ENV_UNIVERSAL_1_6);
+  std::string first_message;
+  optimizer.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
+    if (first_message.empty()) first_message = message;
+  });
+  optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(words));
+  optimizer.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass());
+  optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);
+  std::vector<std::uint32_t> result;
+  if (!optimizer.Run(spirv.data(), spirv.size(), &result, options))
+    fail(label, "the specialisation constants cannot be applied: " + first_message);
+  return result;
+}
+
+/// Folding leaves what it cannot compute.
+void check_folded(std::span<const std::uint32_t> spirv, const std::string& label) {
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    if (operation(i) != spv::OpSpecConstantOp) return;
+    const std::uint32_t inner[] = {1u << 16 | (i[3] & 0xffff)};
+    throw rhi::Error(rhi::ErrorCode::unsupported, label,
+                     "OpSpecConstantOp with " + instruction_name(inner) + " is not supported by the CPU device");
+  });
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const std::string& label,
+                                   std::span<const rhi::SpecializationValue> specialization) {
+  if (spirv.size() < header_words || spirv[0] != spv::MagicNumber)
+    fail(label, "the shader is not SPIR-V: its first word is not the magic number");
+  check_supported(spirv, label);
+  validate(spirv, label);
+  std::vector<std::uint32_t> words = specialize(spirv, label, specialization);
+  check_folded(words, label);
+  for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {
+    if (operation(i) == spv::OpUndef) i[0] = 3u << 16 | spv::OpConstantNull;
+  });
+  return words;
+}
+
+}  // namespace tandem::cpu

@@ -1,0 +1,345 @@
+#include "rhi_cpu/translate/printer.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "rhi/error.hpp"
+#include "rhi_cpu/translate/identifiers.hpp"
+
+namespace tandem::cpu {
+
+using spirv_cross::SPIRBlock;
+using spirv_cross::SPIRConstant;
+using spirv_cross::SPIRFunction;
+using spirv_cross::SPIRString;
+using spirv_cross::SPIRVariable;
+
+namespace {
+
+/// Functions are inlined into their callers, as a GPU does, so that an invocation stays in registers, until a kernel
+/// would have more SPIR-V instructions than this.
+constexpr std::uint64_t inlining_limit = 100'000;
+
+}  // namespace
+
+Printer::Printer(const std::vector<std::uint32_t>& spirv, const std::string& label,
+                 const rhi::ShaderReflection& reflection, const std::string& entry_symbol)
+    : CompilerGLSL(spirv.data(), spirv.size()), label_(label), reflection_(reflection), entry_symbol_(entry_symbol) {}
+
+void Printer::fail(const std::string& what) const {
+  throw rhi::Error(rhi::ErrorCode::unsupported, label_, what + " is not supported by the CPU device");
+}
+
+std::string Printer::compile() {
+  set_up_backend();
+  ir.fixup_reserved_names();
+  build_function_control_flow_graphs_and_analyze();
+  set_up_names();
+  set_up_variables();
+  measure_functions();
+
+  std::uint32_t passes = 0;
+  do {
+    reset(passes++);
+    buffer.reset();
+    addresses_.clear();
+    print_module();
+  } while (is_forcing_recompilation());
+  return buffer.str();
+}
+
+void Printer::set_up_backend() {
+  options.version = 460;
+  options.vulkan_semantics = true;
+  options.force_recompile_max_debug_iterations = 256;
+  backend.float_literal_suffix = true;
+  backend.double_literal_suffix = false;
+  backend.uint32_t_literal_suffix = true;
+  backend.long_long_literal_suffix = true;
+  backend.support_64bit_switch = true;
+  backend.support_precise_qualifier = false;
+  backend.allow_precision_qualifiers = false;
+  backend.requires_relaxed_precision_analysis = false;
+  backend.native_pointers = false;
+  backend.can_return_array = true;
+}
+
+void Printer::set_up_names() {
+  for (std::uint32_t i = 0; i < 3; ++i) workgroup_size_[i] = reflection_.workgroup_size[i];
+  ir.for_each_typed_id<SPIRString>([](std::uint32_t, SPIRString& string) { string.str = escaped(string.str); });
+  for (auto& [id, meta] : ir.meta)
+    if (!meta.decoration.alias.empty()) meta.decoration.alias = identifier(meta.decoration.alias);
+  ir.for_each_typed_id<SPIRFunction>([&](std::uint32_t id, SPIRFunction&) {
+    const std::string& name = ir.meta[id].decoration.alias;
+    ir.meta[id].decoration.alias = id == std::uint32_t(ir.default_entry_point)
+                                       ? "entry_point"
+                                       : fmt::format("function_{}_{}", name.substr(0, name.find('_')), id);
+  });
+
+  // Constants print by "name" everywhere, in SPIRV-Cross's own code too: scalars and vectors are their own literal,
+  // larger ones are globals.
+  std::vector<std::uint32_t> constants;
+  ir.for_each_typed_id<SPIRConstant>([&](std::uint32_t id, SPIRConstant&) { constants.push_back(id); });
+  for (const std::uint32_t id : constants) {
+    auto& constant = get<SPIRConstant>(id);
+    const Type& type = get<Type>(constant.constant_type);
+    if (type.pointer) continue;
+    auto& decoration = ir.meta[id].decoration;
+    decoration.builtin = false;
+    decoration.decoration_flags.clear(spv::DecorationBuiltIn);
+    constant.is_used_as_lut = true;
+    if (is_array(type) || type.basetype == Type::Struct) {
+      decoration.alias = fmt::format("constant_{}", id);
+      composite_constants_.insert(id);
+    } else {
+      decoration.alias = constant_text(constant);
+    }
+  }
+}
+
+void Printer::set_up_variables() {
+  std::uint32_t any_constant = 0;
+  ir.for_each_typed_id<SPIRConstant>([&](std::uint32_t id, SPIRConstant&) { any_constant = id; });
+  if (any_constant == 0) {
+    any_constant = ir.increase_bound_by(1);
+    set<SPIRConstant>(any_constant, 0u);
+  }
+
+  // Every Function variable is declared where its function begins, which is what SPIR-V says, instead of where
+  // SPIRV-Cross finds its first use. The initialiser that it sees only makes it do so.
+  ir.for_each_typed_id<SPIRFunction>([&](std::uint32_t, SPIRFunction& function) {
+    for (const std::uint32_t id : function.local_variables) {
+      auto& variable = get<SPIRVariable>(id);
+      if (variable.initializer)
+        initializers_[id] = variable.initializer;
+      else
+        variable.initializer = any_constant;
+      variable.loop_variable = false;
+      variable.statically_assigned = false;
+      variable.remapped_variable = false;
+      variable.static_expression = 0;
+    }
+  });
+  ir.for_each_typed_id<SPIRBlock>([](std::uint32_t, SPIRBlock& block) { block.loop_variables.clear(); });
+
+  ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
+    if (variable.storage == spv::StorageClassPrivate)
+      ir.meta[id].decoration.alias = fmt::format("private_{}_{}", ir.meta[id].decoration.alias, id);
+    else if (is_buffer(variable.storage) || variable.storage == spv::StorageClassUniformConstant)
+      if (ir.meta[id].decoration.decoration_flags.get(spv::DecorationBinding))
+        ir.meta[id].decoration.alias = fmt::format("block_{}", id);
+  });
+}
+
+void Printer::measure_functions() {
+  // SPIR-V forbids recursion, so this ends.
+  const auto measure = [&](const auto& self, std::uint32_t id) -> std::uint64_t {
+    if (const auto known = inlined_size_.find(id); known != inlined_size_.end()) return known->second;
+    std::uint64_t size = 0;
+    for (const auto& block_id : get<SPIRFunction>(id).blocks) {
+      for (const auto& instruction : get<SPIRBlock>(block_id).ops) {
+        ++size;
+        if (instruction.op == spv::OpLine) has_line_numbers_ = true;
+        if (instruction.op == spv::OpFunctionCall)
+          size = std::min(size + self(self, stream(instruction)[2]), 2 * inlining_limit);
+      }
+    }
+    return inlined_size_[id] = size;
+  };
+  measure(measure, ir.default_entry_point);
+  options.emit_line_directives = has_line_numbers_;
+}
+
+void Printer::print_module() {
+  // The functions are printed first: what they use decides which structs and constants there are.
+  const auto printed = [this](const auto& print) {
+    buffer.reset();
+    print();
+    return buffer.str();
+  };
+  const std::string functions =
+      printed([this] { emit_function(get<SPIRFunction>(ir.default_entry_point), spirv_cross::Bitset()); });
+  const std::string constants = printed([this] { print_constants(); });
+  const std::string memory = printed([this] { print_struct_memory_functions(); });
+  const std::string members = printed([this] { print_members(); });
+  buffer.reset();
+  statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
+  statement("");
+  statement("namespace {");
+  statement("");
+  statement("namespace k = tandem::kernel;");
+  statement("");
+  statement(struct_declarations_, constants, memory, members, functions, "};");
+  statement("");
+  print_run();
+  print_info();
+}
+
+const rhi::ShaderBinding* Printer::binding_of(std::uint32_t variable) const {
+  const std::uint32_t set = get_decoration(variable, spv::DecorationDescriptorSet);
+  const std::uint32_t binding = get_decoration(variable, spv::DecorationBinding);
+  for (const rhi::ShaderBinding& each : reflection_.bindings)
+    if (each.set == set && each.binding == binding) return &each;
+  return nullptr;
+}
+
+std::uint32_t Printer::first_resource_of(std::uint32_t variable) const {
+  const rhi::ShaderBinding* binding = binding_of(variable);
+  std::uint32_t first = 0;
+  for (const rhi::ShaderBinding& each : reflection_.bindings) {
+    if (&each == binding) break;
+    first += each.count;
+  }
+  return first;
+}
+
+void Printer::print_members() {
+  statement("struct Invocation {");
+  statement("const k::Resource* resources;");
+  statement("const std::byte* push_constants;");
+  for (const char* built_in : {"NumWorkgroups", "WorkgroupId", "LocalInvocationId", "GlobalInvocationId"})
+    statement("k::uvec3 built_in_", built_in, ";");
+  statement("k::uint built_in_LocalInvocationIndex;");
+  ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
+    if (variable.storage == spv::StorageClassPrivate) {
+      const std::uint32_t type = pointee(variable.basetype);
+      std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
+      if (variable.initializer) initial = " = " + value(variable.initializer);
+      statement(type_name(type), " ", to_name(id), initial, ";");
+      return;
+    }
+    if (!has_decoration(id, spv::DecorationBinding) || binding_of(id) == nullptr) return;
+    const Type& type = get<Type>(pointee(variable.basetype));
+    const std::string first = fmt::format("resources[{}]", first_resource_of(id));
+    if (is_array(type))
+      statement("const k::Resource* ", to_name(id), " = &", first, ";");
+    else if (variable.storage == spv::StorageClassUniformConstant)
+      statement("const k::TopLevel* ", to_name(id), " = reinterpret_cast<const k::TopLevel*>(", first, ".data);");
+    else
+      statement("std::byte* ", to_name(id), " = ", first, ".data;");
+  });
+  statement("");
+}
+
+void Printer::print_constants() {
+  std::vector<std::uint32_t> ids(composite_constants_.begin(), composite_constants_.end());
+  std::sort(ids.begin(), ids.end());
+  for (const std::uint32_t id : ids) {
+    const auto& constant = get<SPIRConstant>(id);
+    const std::string type = type_name(constant.constant_type);
+    statement("const ", type, " constant_", id, " = ", constant_initializer(constant), ";");
+  }
+  statement("");
+}
+
+void Printer::print_run() {
+  statement(fmt::format(
+      R"(void run(const k::Dispatch& dispatch, std::uint64_t first, std::uint64_t end) {{
+  const k::uvec3 count(dispatch.workgroup_count[0], dispatch.workgroup_count[1], dispatch.workgroup_count[2]);
+  for (std::uint64_t workgroup = first; workgroup < end; ++workgroup) {{
+    const k::uvec3 id(workgroup % count.x, workgroup / count.x % count.y, workgroup / count.x / count.y);
+    k::uint index = 0;
+    for (k::uint z = 0; z < {2}u; ++z)
+      for (k::uint y = 0; y < {1}u; ++y)
+        for (k::uint x = 0; x < {0}u; ++x) {{
+          const k::uvec3 local(x, y, z);
+          Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, id * k::uvec3({0}u, {1}u, {2}u) + local, index++}}
+              .entry_point();
+        }}
+  }}
+}}
+)",
+      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2]));
+}
+
+std::string Printer::resource_kind(rhi::BindingKind kind) const {
+  switch (kind) {
+    case rhi::BindingKind::uniform_buffer:
+      return "uniform_buffer";
+    case rhi::BindingKind::storage_buffer:
+      return "storage_buffer";
+    case rhi::BindingKind::acceleration_structure:
+      return "acceleration_structure";
+    default:
+      fail("an image or sampler binding");
+  }
+}
+
+void Printer::print_info() {
+  std::uint32_t resources = 0;
+  std::string slots;
+  for (const rhi::ShaderBinding& binding : reflection_.bindings) {
+    slots += fmt::format("    {{{}, {}, {}, {}, k::ResourceKind::{}}},\n", binding.set, binding.binding, binding.count,
+                         resources, resource_kind(binding.kind));
+    resources += binding.count;
+  }
+  const bool any = !reflection_.bindings.empty();
+  if (any) statement("constexpr k::BindingSlot binding_slots[] = {\n", slots, "};");
+  statement(
+      fmt::format("constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, run}};\n",
+                  workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
+                  reflection_.bindings.size(), any ? "binding_slots" : "nullptr"));
+  statement("}  // namespace");
+  statement("");
+  statement("extern \"C\" __attribute__((visibility(\"default\"))) const tandem::kernel::KernelInfo* ", entry_symbol_,
+            "() { return &kernel_info; }");
+}
+
+void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross::Bitset&) {
+  const bool is_entry = std::uint32_t(function.self) == std::uint32_t(ir.default_entry_point);
+  processing_entry_point = is_entry;
+  local_variable_names = resource_names;
+  const bool inlined = inlined_size_[ir.default_entry_point] <= inlining_limit;
+  std::string parameters;
+  for (auto& parameter : function.arguments) {
+    add_local_variable_name(parameter.id);
+    if (auto* variable = maybe_get<SPIRVariable>(parameter.id)) variable->parameter = &parameter;
+    const Type& type = get<Type>(parameter.type);
+    if (!parameters.empty()) parameters += ", ";
+    if (!type.pointer) {
+      parameters += type_name(parameter.type) + " " + to_name(parameter.id);
+    } else if (is_buffer(type.storage)) {
+      if (get<Type>(pointee(parameter.type)).columns > 1) fail("a pointer to a matrix in a buffer as parameter");
+      parameters += "std::byte* " + to_name(parameter.id);
+      addresses_[parameter.id] = {.bytes = to_name(parameter.id), .resource = ""};
+    } else {
+      const bool by_value = type.storage == spv::StorageClassUniformConstant;
+      parameters += type_name(pointee(parameter.type)) + (by_value ? " " : "& ") + to_name(parameter.id);
+    }
+  }
+  statement(inlined || is_entry ? "[[gnu::always_inline]] " : "", "inline ", type_name(function.return_type), " ",
+            to_name(function.self), "(", parameters, ")");
+}
+
+std::string Printer::variable_decl(const Type& type, const std::string& name, std::uint32_t) {
+  return type_name(type) + " " + name;
+}
+
+std::string Printer::variable_decl(const SPIRVariable& variable) {
+  std::uint32_t type = variable.basetype;
+  if (get<Type>(type).pointer) type = pointee(type);
+  std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
+  if (const auto initializer = initializers_.find(variable.self); initializer != initializers_.end())
+    initial = " = " + value(initializer->second);
+  return type_name(type) + " " + to_name(variable.self) + initial;
+}
+
+std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
+  switch (builtin) {
+    case spv::BuiltInNumWorkgroups:
+      return "built_in_NumWorkgroups";
+    case spv::BuiltInWorkgroupId:
+      return "built_in_WorkgroupId";
+    case spv::BuiltInLocalInvocationId:
+      return "built_in_LocalInvocationId";
+    case spv::BuiltInGlobalInvocationId:
+      return "built_in_GlobalInvocationId";
+    case spv::BuiltInLocalInvocationIndex:
+      return "built_in_LocalInvocationIndex";
+    default:
+      fail(fmt::format("built-in {}", static_cast<std::uint32_t>(builtin)));
+  }
+}
+
+}  // namespace tandem::cpu

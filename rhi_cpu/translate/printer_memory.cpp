@@ -1,0 +1,267 @@
+#include <fmt/format.h>
+
+#include "rhi_cpu/translate/printer.hpp"
+
+namespace tandem::cpu {
+
+using spirv_cross::SPIRConstant;
+using spirv_cross::SPIRExpression;
+using spirv_cross::SPIRType;
+using spirv_cross::SPIRVariable;
+
+namespace {
+
+std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
+
+}  // namespace
+
+bool Printer::is_buffer(spv::StorageClass storage) const {
+  return storage == spv::StorageClassUniform || storage == spv::StorageClassStorageBuffer ||
+         storage == spv::StorageClassPushConstant;
+}
+
+bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && type_of(id).pointer; }
+
+std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const {
+  if (!has_member_decoration(struct_type_id, member, spv::DecorationMatrixStride)) return 0;
+  return type_struct_member_matrix_stride(get<Type>(struct_type_id), member);
+}
+
+std::uint32_t Printer::pointee(std::uint32_t pointer_type_id) const { return get<Type>(pointer_type_id).parent_type; }
+
+Printer::Address Printer::address_of(std::uint32_t pointer_id) {
+  if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) return known->second;
+  const auto* variable = maybe_get<SPIRVariable>(pointer_id);
+  if (variable == nullptr) fail("a pointer into a buffer that comes from neither a variable nor an access chain");
+  if (variable->storage == spv::StorageClassPushConstant) return {.bytes = "push_constants", .resource = ""};
+  if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = to_name(pointer_id)};
+  return {.bytes = to_name(pointer_id), .resource = fmt::format("resources[{}]", first_resource_of(pointer_id))};
+}
+
+std::string Printer::printed(const Address& address) const {
+  return address.offset == 0 ? address.bytes : fmt::format("{} + {}", address.bytes, address.offset);
+}
+
+void Printer::index_address(Address& address, std::uint32_t index_id, std::uint32_t stride) {
+  if (const auto* constant = maybe_get<SPIRConstant>(index_id))
+    address.offset += constant->scalar() * stride;
+  else
+    address.bytes += fmt::format(" + std::size_t({}) * {}", value(index_id), stride);
+}
+
+void Printer::print_access_chain(Operands ops, std::uint32_t length) {
+  if (is_buffer_pointer(ops[2]))
+    chain_in_buffer(ops, length);
+  else
+    chain_in_variable(ops, length);
+}
+
+void Printer::chain_in_buffer(Operands ops, std::uint32_t length) {
+  Address address = address_of(ops[2]);
+  const Type* type = &get<Type>(pointee(expression_type_id(ops[2])));
+  std::uint32_t type_id = pointee(expression_type_id(ops[2]));
+  std::uint32_t i = 3;
+  if (address.bytes.empty() && i < length) {
+    // An array of descriptors, flattened in the order in which its elements are bound.
+    std::string index;
+    for (; is_array(*type); ++i, type_id = type->parent_type, type = &get<Type>(type_id)) {
+      if (i == length) fail("a pointer to an array of buffers");
+      index = index.empty() ? fmt::format("std::size_t({})", value(ops[i]))
+                            : fmt::format("({} * {} + {})", index, array_length(*type), value(ops[i]));
+    }
+    address.resource += "[" + index + "]";
+    address.bytes = address.resource + ".data";
+  }
+  for (; i < length; ++i) {
+    if (is_array(*type)) {
+      index_address(address, ops[i], get_decoration(type_id, spv::DecorationArrayStride));
+      type_id = type->parent_type;
+    } else if (type->basetype == SPIRType::Struct) {
+      const std::uint32_t member = get<SPIRConstant>(ops[i]).scalar();
+      const std::uint32_t self = type->self;
+      address.offset += get_member_decoration(self, member, spv::DecorationOffset);
+      address.matrix_stride = matrix_stride(self, member);
+      address.row_major = has_member_decoration(self, member, spv::DecorationRowMajor);
+      type_id = type->member_types[member];
+    } else if (type->columns > 1) {
+      index_address(address, ops[i], address.row_major ? scalar_size(*type) : address.matrix_stride);
+      address.component_stride = address.row_major ? address.matrix_stride : 0;
+      type_id = type->parent_type;
+    } else {
+      index_address(address, ops[i], address.component_stride != 0 ? address.component_stride : scalar_size(*type));
+      type_id = type->parent_type;
+    }
+    type = &get<Type>(type_id);
+  }
+  addresses_[ops[1]] = address;
+  set<SPIRExpression>(ops[1], fmt::format("({})", printed(address)), ops[0], true);
+}
+
+void Printer::chain_in_variable(Operands ops, std::uint32_t length) {
+  std::string text = value(ops[2]);
+  const Type* type = &get<Type>(pointee(expression_type_id(ops[2])));
+  for (std::uint32_t i = 3; i < length; ++i) {
+    const auto* constant = maybe_get<SPIRConstant>(ops[i]);
+    const std::uint32_t index = constant != nullptr ? constant->scalar() : 0;
+    text = constant != nullptr ? element(text, *type, index) : fmt::format("{}[{}]", text, value(ops[i]));
+    type = &element_type(*type, index);
+  }
+  set<SPIRExpression>(ops[1], text, ops[0], true);
+}
+
+std::string Printer::load_text(std::uint32_t type_id, const Address& address) {
+  const Type& type = get<Type>(type_id);
+  const std::string name = type_name(type);
+  if (is_array(type)) {
+    const Address element = {
+        .bytes = "element", .resource = "", .matrix_stride = address.matrix_stride, .row_major = address.row_major};
+    return fmt::format("k::load_array<{}, {}>({}, [](const std::byte* element) {{ return {}; }})", name,
+                       get_decoration(type_id, spv::DecorationArrayStride), printed(address),
+                       load_text(type.parent_type, element));
+  }
+  if (type.basetype == SPIRType::Struct) return fmt::format("load_{}({})", std::uint32_t(type.self), printed(address));
+  if (type.columns > 1)
+    return fmt::format("k::load_matrix<{}, {}, {}>({})", name, address.matrix_stride, address.row_major,
+                       printed(address));
+  if (type.vecsize > 1 && address.component_stride != 0)
+    return fmt::format("k::load_strided<{}, {}>({})", name, address.component_stride, printed(address));
+  return fmt::format("k::load<{}>({})", name, printed(address));
+}
+
+std::string Printer::store_text(std::uint32_t type_id, const Address& address, const std::string& value) {
+  const Type& type = get<Type>(type_id);
+  if (is_array(type)) {
+    const Address element = {
+        .bytes = "element", .resource = "", .matrix_stride = address.matrix_stride, .row_major = address.row_major};
+    return fmt::format("k::store_array<{}, {}>({}, {}, [](std::byte* element, const auto& item) {{ {}; }})",
+                       type_name(type), get_decoration(type_id, spv::DecorationArrayStride), printed(address), value,
+                       store_text(type.parent_type, element, "item"));
+  }
+  if (type.basetype == SPIRType::Struct)
+    return fmt::format("store_{}({}, {})", std::uint32_t(type.self), printed(address), value);
+  if (type.columns > 1)
+    return fmt::format("k::store_matrix<{}, {}, {}>({}, {})", type_name(type), address.matrix_stride, address.row_major,
+                       printed(address), value);
+  if (type.vecsize > 1 && address.component_stride != 0)
+    return fmt::format("k::store_strided<{}, {}>({}, {})", type_name(type), address.component_stride, printed(address),
+                       value);
+  return fmt::format("k::store<{}>({}, {})", type_name(type), printed(address), value);
+}
+
+void Printer::print_struct_memory(std::uint32_t struct_type_id) {
+  const Type& type = get<Type>(struct_type_id);
+  const std::vector<std::string> names = member_names(type);
+  std::string loads, stores;
+  for (std::uint32_t i = 0; i < names.size(); ++i) {
+    const Address address = {.bytes = "address",
+                             .resource = "",
+                             .offset = get_member_decoration(struct_type_id, i, spv::DecorationOffset),
+                             .matrix_stride = matrix_stride(struct_type_id, i),
+                             .row_major = has_member_decoration(struct_type_id, i, spv::DecorationRowMajor)};
+    loads += fmt::format("{}\n      {}", i == 0 ? "" : ",", load_text(type.member_types[i], address));
+    stores += fmt::format("  {};\n", store_text(type.member_types[i], address, "value." + names[i]));
+  }
+  const std::string name = struct_name(type);
+  statement("inline ", name, " load_", struct_type_id, "(const std::byte* address) {\n  return {", loads, "};\n}");
+  statement("inline void store_", struct_type_id, "(std::byte* address, const ", name, "& value) {\n", stores, "}");
+  statement("");
+}
+
+void Printer::print_struct_memory_functions() {
+  // Ids are in order of declaration, and SPIR-V declares a struct after those it contains.
+  ir.for_each_typed_id<SPIRType>([&](std::uint32_t id, const Type& type) {
+    if (type.basetype != SPIRType::Struct || type.pointer || is_array(type) || std::uint32_t(type.self) != id) return;
+    if (type.member_types.empty()) return;
+    for (std::uint32_t i = 0; i < type.member_types.size(); ++i) {
+      const Type& member = get<Type>(type.member_types[i]);
+      if (!has_member_decoration(id, i, spv::DecorationOffset) || is_runtime_array(member)) return;
+    }
+    print_struct_memory(id);
+  });
+}
+
+void Printer::print_load(Operands ops) {
+  if (is_buffer_pointer(ops[2])) {
+    define(ops[0], ops[1], load_text(ops[0], address_of(ops[2])));
+  } else if (get<Type>(ops[0]).basetype == SPIRType::AccelerationStructure && !is_array(get<Type>(ops[0]))) {
+    const bool parameter_or_variable = maybe_get<SPIRVariable>(ops[2]) != nullptr;
+    const std::string text = value(ops[2]);
+    // An element of an array of descriptors is a kernel::Resource.
+    define(ops[0], ops[1],
+           "k::accelerationStructureEXT{" +
+               (parameter_or_variable ? text : "reinterpret_cast<const k::TopLevel*>(" + text + ".data)") + "}");
+  } else {
+    define(ops[0], ops[1], value(ops[2]));
+  }
+}
+
+void Printer::print_store(std::uint32_t pointer_id, const std::string& text) {
+  if (is_buffer_pointer(pointer_id))
+    statement(store_text(pointee(expression_type_id(pointer_id)), address_of(pointer_id), text), ";");
+  else
+    statement(value(pointer_id), " = ", text, ";");
+}
+
+void Printer::print_array_length(Operands ops) {
+  const Address address = address_of(ops[2]);
+  if (address.resource.empty()) fail("OpArrayLength of a buffer that is a function parameter");
+  const Type& type = get<Type>(pointee(expression_type_id(ops[2])));
+  define(ops[0], ops[1],
+         fmt::format("k::runtime_array_length({}.size, {}, {})", address.resource,
+                     get_member_decoration(type.self, ops[3], spv::DecorationOffset),
+                     get_decoration(type.member_types[ops[3]], spv::DecorationArrayStride)));
+}
+
+void Printer::print_atomic(spv::Op op, Operands ops) {
+  const bool stores = op == spv::OpAtomicStore;
+  const std::uint32_t pointer_id = stores ? ops[0] : ops[2];
+  if (!is_buffer_pointer(pointer_id)) fail("an atomic operation outside of buffers");
+  const Type& type = get<Type>(pointee(expression_type_id(pointer_id)));
+  const std::string address = printed(address_of(pointer_id));
+  const auto call = [&](const char* function, BaseType base, const std::string& arguments) {
+    return fmt::format("k::atomic_{}<{}>({}{})", function, scalar_name(base), address, arguments);
+  };
+  if (stores) {
+    statement(call("store", type.basetype, ", " + value(ops[3])), ";");
+    return;
+  }
+  const auto define_call = [&](const char* function, BaseType base, const std::string& argument) {
+    define_as(ops[0], ops[1], call(function, base, ", " + argument), base);
+  };
+  const BaseType base = type.basetype;
+  switch (op) {
+    case spv::OpAtomicLoad:
+      return define(ops[0], ops[1], call("load", base, ""));
+    case spv::OpAtomicExchange:
+      return define_call("exchange", base, value_as(ops[5], base));
+    case spv::OpAtomicCompareExchange:
+      return define_call("compare_exchange", base, value_as(ops[7], base) + ", " + value_as(ops[6], base));
+    case spv::OpAtomicIIncrement:
+      return define_call("add", base, "1");
+    case spv::OpAtomicIDecrement:
+      return define_call("subtract", base, "1");
+    case spv::OpAtomicIAdd:
+    case spv::OpAtomicFAddEXT:
+      return define_call("add", base, value_as(ops[5], base));
+    case spv::OpAtomicISub:
+      return define_call("subtract", base, value_as(ops[5], base));
+    case spv::OpAtomicSMin:
+      return define_call("min", to_signed(base), value_as(ops[5], to_signed(base)));
+    case spv::OpAtomicUMin:
+      return define_call("min", to_unsigned(base), value_as(ops[5], to_unsigned(base)));
+    case spv::OpAtomicSMax:
+      return define_call("max", to_signed(base), value_as(ops[5], to_signed(base)));
+    case spv::OpAtomicUMax:
+      return define_call("max", to_unsigned(base), value_as(ops[5], to_unsigned(base)));
+    case spv::OpAtomicAnd:
+      return define_call("and", base, value_as(ops[5], base));
+    case spv::OpAtomicOr:
+      return define_call("or", base, value_as(ops[5], base));
+    case spv::OpAtomicXor:
+      return define_call("xor", base, value_as(ops[5], base));
+    default:
+      fail(fmt::format("atomic SPIR-V opcode {}", static_cast<std::uint32_t>(op)));
+  }
+}
+
+}  // namespace tandem::cpu

@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/printer.hpp"
+
+namespace tandem::cpu {
+
+using spirv_cross::SPIRConstant;
+using spirv_cross::SPIRType;
+
+std::uint32_t Printer::array_length(const Type& type) const {
+  if (!type.array_size_literal.back()) fail("an array whose length is no plain constant");
+  return type.array.back();
+}
+
+bool Printer::is_opaque(const Type& type) const {
+  return type.basetype == SPIRType::RayQuery || type.basetype == SPIRType::AccelerationStructure;
+}
+
+std::string Printer::scalar_name(BaseType base) const {
+  switch (base) {
+    case SPIRType::Void:
+      return "void";
+    case SPIRType::Boolean:
+      return "bool";
+    case SPIRType::SByte:
+      return "std::int8_t";
+    case SPIRType::UByte:
+      return "std::uint8_t";
+    case SPIRType::Short:
+      return "std::int16_t";
+    case SPIRType::UShort:
+      return "std::uint16_t";
+    case SPIRType::Int:
+      return "int";
+    case SPIRType::UInt:
+      return "k::uint";
+    case SPIRType::Int64:
+      return "std::int64_t";
+    case SPIRType::UInt64:
+      return "std::uint64_t";
+    case SPIRType::Float:
+      return "float";
+    case SPIRType::Double:
+      return "double";
+    default:
+      fail(fmt::format("SPIRV-Cross base type {}", static_cast<int>(base)));
+  }
+}
+
+std::string Printer::vector_name(BaseType base, std::uint32_t length) const {
+  if (length == 1) return scalar_name(base);
+  const char* prefix = base == SPIRType::Float     ? ""
+                       : base == SPIRType::Int     ? "i"
+                       : base == SPIRType::UInt    ? "u"
+                       : base == SPIRType::Boolean ? "b"
+                       : base == SPIRType::Double  ? "d"
+                                                   : nullptr;
+  if (prefix == nullptr) return fmt::format("k::vector<{}, {}>", length, scalar_name(base));
+  return fmt::format("k::{}vec{}", prefix, length);
+}
+
+std::string Printer::type_name(const Type& type) {
+  if (type.pointer) fail("a pointer as a value");
+  if (is_array(type))
+    return fmt::format("k::Array<{}, {}>", type_name(get<Type>(type.parent_type)), array_length(type));
+  switch (type.basetype) {
+    case SPIRType::Struct:
+      return struct_name(type);
+    case SPIRType::RayQuery:
+      return "k::rayQueryEXT";
+    case SPIRType::AccelerationStructure:
+      return "k::accelerationStructureEXT";
+    default:
+      break;
+  }
+  if (type.columns == 1) return vector_name(type.basetype, type.vecsize);
+  if (type.basetype == SPIRType::Float) return fmt::format("k::mat{}x{}", type.columns, type.vecsize);
+  return fmt::format("k::matrix<{}, {}, {}>", type.columns, type.vecsize, scalar_name(type.basetype));
+}
+
+std::vector<std::string> Printer::member_names(const Type& type) const {
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < type.member_types.size(); ++i) {
+    const std::string& given = get_member_name(type.self, i);
+    std::string name = given.empty() ? fmt::format("member{}", i) : identifier(given);
+    while (std::find(names.begin(), names.end(), name) != names.end()) name += std::to_string(i);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+std::string Printer::struct_name(const Type& type) {
+  const std::uint32_t id = type.self;
+  if (const auto known = struct_names_.find(id); known != struct_names_.end()) return known->second;
+
+  // GLSL's one struct is one SPIR-V type per memory layout; as a value they are the same C++ type.
+  const std::vector<std::string> names = member_names(type);
+  std::string members;
+  for (std::uint32_t i = 0; i < names.size(); ++i)
+    members += fmt::format("  {} {};\n", type_name(type.member_types[i]), names[i]);
+  const std::string& given = get_name(id);
+  std::string base = given.empty() ? "" : "_" + given;
+  const auto [place, inserted] = structs_.try_emplace(base + members, fmt::format("struct{}_{}", base, id));
+  if (inserted) struct_declarations_ += fmt::format("struct {} {{\n{}}};\n\n", place->second, members);
+  return struct_names_[id] = place->second;
+}
+
+std::string Printer::scalar_text(const SPIRConstant& constant, BaseType base, std::uint32_t column,
+                                 std::uint32_t row) const {
+  const auto number = [](auto x, const char* suffix) {
+    if (std::isnan(x) || std::isinf(x)) return std::string();
+    std::string text = fmt::format("{}", x);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    text += suffix;
+    return std::signbit(x) ? "(" + text + ")" : text;
+  };
+  const auto signed_number = [](std::int64_t x) { return x < 0 ? fmt::format("({})", x) : fmt::format("{}", x); };
+  switch (base) {
+    case SPIRType::Boolean:
+      return constant.scalar(column, row) != 0 ? "true" : "false";
+    case SPIRType::SByte:
+      return fmt::format("std::int8_t({})", constant.scalar_i8(column, row));
+    case SPIRType::UByte:
+      return fmt::format("std::uint8_t({})", constant.scalar_u8(column, row));
+    case SPIRType::Short:
+      return fmt::format("std::int16_t({})", constant.scalar_i16(column, row));
+    case SPIRType::UShort:
+      return fmt::format("std::uint16_t({})", constant.scalar_u16(column, row));
+    case SPIRType::Int:
+      if (constant.scalar_i32(column, row) == INT32_MIN) return "(-2147483647 - 1)";
+      return signed_number(constant.scalar_i32(column, row));
+    case SPIRType::UInt:
+      return fmt::format("{}u", constant.scalar(column, row));
+    case SPIRType::Int64:
+      if (constant.scalar_i64(column, row) == INT64_MIN) return "std::int64_t(-9223372036854775807 - 1)";
+      return fmt::format("std::int64_t({})", constant.scalar_i64(column, row));
+    case SPIRType::UInt64:
+      return fmt::format("std::uint64_t({}u)", constant.scalar_u64(column, row));
+    case SPIRType::Float: {
+      const std::string text = number(constant.scalar_f32(column, row), "f");
+      return !text.empty() ? text : fmt::format("k::bit_cast<float>({:#x}u)", constant.scalar(column, row));
+    }
+    case SPIRType::Double: {
+      const std::string text = number(constant.scalar_f64(column, row), "");
+      return !text.empty() ? text
+                           : fmt::format("k::bit_cast<double>(std::uint64_t({:#x}))", constant.scalar_u64(column, row));
+    }
+    default:
+      fail("a constant of " + scalar_name(base));
+  }
+}
+
+std::string Printer::constant_text(const SPIRConstant& constant) {
+  const Type& type = get<Type>(constant.constant_type);
+  if (type.vecsize == 1 && type.columns == 1) return scalar_text(constant, type.basetype, 0, 0);
+  std::string elements;
+  for (std::uint32_t column = 0; column < type.columns; ++column)
+    for (std::uint32_t row = 0; row < type.vecsize; ++row)
+      elements += (elements.empty() ? "" : ", ") + scalar_text(constant, type.basetype, column, row);
+  return fmt::format("{}({})", type_name(type), elements);
+}
+
+std::string Printer::constant_initializer(const SPIRConstant& constant) {
+  const Type& type = get<Type>(constant.constant_type);
+  if (!is_array(type) && type.basetype != SPIRType::Struct) return constant_text(constant);
+  std::string elements;
+  for (const auto& id : constant.subconstants)
+    elements += (elements.empty() ? "" : ", ") + constant_initializer(get<SPIRConstant>(id));
+  return fmt::format("{}{{{}}}", type_name(type), is_array(type) ? "{" + elements + "}" : elements);
+}
+
+const SPIRType& Printer::element_type(const Type& type, std::uint32_t index) const {
+  if (is_array(type) || type.basetype != SPIRType::Struct) return get<Type>(type.parent_type);
+  return get<Type>(type.member_types[index]);
+}
+
+std::string Printer::element(const std::string& composite, const Type& type, std::uint32_t index) const {
+  if (is_array(type) || (type.basetype != SPIRType::Struct && type.columns > 1))
+    return fmt::format("{}[{}]", composite, index);
+  if (type.basetype == SPIRType::Struct) return fmt::format("{}.{}", composite, member_names(type)[index]);
+  return fmt::format("{}.{}", composite, "xyzw"[index]);
+}
+
+}  // namespace tandem::cpu

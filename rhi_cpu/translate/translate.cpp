@@ -1,0 +1,26 @@
+#include "rhi_cpu/translate/translate.hpp"
+
+#include <exception>
+#include <vector>
+
+#include "rhi/error.hpp"
+#include "rhi/shader_reflection.hpp"
+#include "rhi_cpu/translate/prepare.hpp"
+#include "rhi_cpu/translate/printer.hpp"
+
+namespace tandem::cpu {
+
+Translation translate(std::span<const std::uint32_t> spirv, const std::string& label, const TranslateOptions& options) {
+  const std::vector<std::uint32_t> words = prepare(spirv, label, options.specialization);
+  const rhi::ShaderReflection reflection = rhi::reflect(words, label);
+  try {
+    return {Printer(words, label, reflection, options.entry_symbol).compile()};
+  } catch (const rhi::Error&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw rhi::Error(rhi::ErrorCode::unsupported, label,
+                     std::string("the SPIR-V cannot be translated: ") + error.what());
+  }
+}
+
+}  // namespace tandem::cpu
