@@ -23,8 +23,8 @@ struct TriangleInput {
   std::span<const std::byte> vertices = {};  ///< vertex_count positions of three floats, `vertex_stride` bytes apart
   std::uint32_t vertex_count = 0;
   std::uint32_t vertex_stride = 12;
-  std::span<const std::byte>
-      indices;  ///< tightly packed; empty with IndexFormat::none: consecutive triples of vertices
+  /// Tightly packed; empty with IndexFormat::none: consecutive triples of vertices.
+  std::span<const std::byte> indices = {};
   rhi::IndexFormat index_format = rhi::IndexFormat::none;
   std::uint32_t triangle_count = 0;
   std::optional<std::array<float, 12>> transform = {};  ///< row-major 3x4, applied to the positions now
@@ -54,7 +54,10 @@ class BottomLevel {
 using BottomLevelLookup = std::function<const BottomLevel*(std::uint64_t blas_address)>;
 
 /// Instances of bottom levels, which it keeps alive as they were when it was built. An instance is inactive when its
-/// blas_address is 0 or its transform is not finite or cannot be inverted.
+/// blas_address is 0, when its transform is not finite or cannot be inverted in single precision, and when the
+/// transform or its inverse scales by more than 1e9 or moves by more than 1e17, which is beyond Embree's range. Rays
+/// whose coordinates are beyond it in world or object space (1e18 / 4 divided by the largest inverse scale) hit
+/// nothing.
 class TopLevel {
  public:
   /// Throws rhi::Error, in the name of `label`, for an address that `lookup` does not know, and when memory runs out.

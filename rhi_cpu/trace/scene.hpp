@@ -32,6 +32,8 @@ struct TopLevelScene : kernel::TopLevel {
   /// `scene` is a bottom level, whose object space is world space; its instance is `direct_instance`.
   bool direct = false;
   std::uint32_t direct_instance = 0;
+  /// Rays with larger coordinates are not given to Embree, which stops the program for coordinates beyond its range.
+  float coordinate_limit = 0;
   bool masks_in_filter = false;  ///< Embree does not skip instances by mask
 };
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -11,18 +12,41 @@
 namespace tandem::cpu {
 namespace {
 
-/// Inverts an affine transform in double precision. False when a result is not finite, as for a singular matrix.
+// What Embree's single-precision inverse and its traversal can stand; see TopLevel.
+constexpr double largest_scale = 1e9;
+constexpr double largest_translation = 1e17;
+constexpr float largest_coordinate = 0.25e18f;
+
+bool is_in_range(const float (&m)[3][4]) {
+  for (const auto& row : m) {
+    for (int column = 0; column < 4; ++column) {
+      if (!(std::abs(double{row[column]}) <= (column < 3 ? largest_scale : largest_translation))) return false;
+    }
+  }
+  return true;
+}
+
+/// Inverts an affine transform in double precision. False when it is out of range, or when single precision could find
+/// its determinant to be zero.
 bool invert(const float (&m)[3][4], float (&inverse)[3][4]) {
+  if (!is_in_range(m)) return false;
   double cofactors[3][3];
+  double determinant = 0;
+  double sum_of_magnitudes = 0;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) {
       const int r1 = (row + 1) % 3, r2 = (row + 2) % 3;
       const int c1 = (column + 1) % 3, c2 = (column + 2) % 3;
-      cofactors[row][column] = double{m[r1][c1]} * double{m[r2][c2]} - double{m[r1][c2]} * double{m[r2][c1]};
+      const double positive = double{m[r1][c1]} * double{m[r2][c2]};
+      const double negative = double{m[r1][c2]} * double{m[r2][c1]};
+      cofactors[row][column] = positive - negative;
+      if (row > 0) continue;
+      determinant += double{m[0][column]} * cofactors[0][column];
+      sum_of_magnitudes += std::abs(double{m[0][column]}) * (std::abs(positive) + std::abs(negative));
     }
   }
-  const double determinant =
-      double{m[0][0]} * cofactors[0][0] + double{m[0][1]} * cofactors[0][1] + double{m[0][2]} * cofactors[0][2];
+  // Four roundings of each product and sum, and a margin.
+  if (!(std::abs(determinant) > 0x1p-20 * sum_of_magnitudes)) return false;
   for (int row = 0; row < 3; ++row) {
     double translation = 0;
     for (int column = 0; column < 3; ++column) {
@@ -31,11 +55,16 @@ bool invert(const float (&m)[3][4], float (&inverse)[3][4]) {
       inverse[row][column] = static_cast<float>(value);
     }
     inverse[row][3] = static_cast<float>(translation);
-    for (float value : inverse[row]) {
-      if (!std::isfinite(value)) return false;
-    }
   }
-  return true;
+  return is_in_range(inverse);
+}
+
+float coordinate_limit_of(const kernel::Instance& instance) {
+  float scale = 1;
+  for (const auto& row : instance.world_to_object) {
+    for (int column = 0; column < 3; ++column) scale = std::max(scale, std::abs(row[column]));
+  }
+  return largest_coordinate / scale;
 }
 
 bool is_identity(const float (&m)[3][4]) {
@@ -96,6 +125,7 @@ TopLevel TopLevel::build(const EmbreeDevice& device, std::span<const rhi::Instan
   result->instance_storage.resize(instances.size());
   result->traits.resize(instances.size());
   result->all_opaque = true;
+  result->coordinate_limit = largest_coordinate;
   result->masks_in_filter = !device.has_ray_masks();
   std::uint32_t active_count = 0;
   std::uint32_t last_active = 0;
@@ -105,6 +135,7 @@ TopLevel TopLevel::build(const EmbreeDevice& device, std::span<const rhi::Instan
     if (traits.bottom_level == nullptr) continue;
     ++active_count;
     last_active = i;
+    result->coordinate_limit = std::min(result->coordinate_limit, coordinate_limit_of(result->instance_storage[i]));
     result->all_opaque = result->all_opaque && is_opaque(traits);
   }
 

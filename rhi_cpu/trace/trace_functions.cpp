@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -48,9 +49,23 @@ void clear_hit(RTCHit& hit) {
   hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
 }
 
-/// A scene that is traced without its instance level has no instance for Embree to test.
-bool is_masked_out(const TopLevelScene& scene, const Ray& ray) {
-  return scene.direct && (scene.traits[scene.direct_instance].mask & ray.mask) == 0;
+using IntegerVector = std::int32_t __attribute__((vector_size(16)));
+
+/// Whether Embree may be given the ray, and has anything to find: Debian's Embree ends the program for a coordinate
+/// that is NaN or beyond its range.
+bool is_traceable(const TopLevelScene& scene, const Ray& ray) {
+  // A scene that is traced without its instance level has no instance whose mask Embree could test.
+  if (scene.direct && (scene.traits[scene.direct_instance].mask & ray.mask) == 0) return false;
+  // Magnitudes of floats order like their bits, and NaN comes above all of them; the fourth elements are t_min and
+  // t_max.
+  const auto vectors = std::bit_cast<kernel::RayVectors>(ray);
+  const std::int32_t limit = std::bit_cast<std::int32_t>(scene.coordinate_limit);
+  constexpr std::int32_t magnitude = 0x7FFFFFFF;
+  const IntegerVector too_large =
+      ((std::bit_cast<IntegerVector>(vectors.origin) & IntegerVector{magnitude, magnitude, magnitude, 0}) > limit) |
+      ((std::bit_cast<IntegerVector>(vectors.direction) & IntegerVector{magnitude, magnitude, magnitude, 0}) > limit);
+  const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(too_large);
+  return (halves[0] | halves[1]) == 0;
 }
 
 std::uint32_t instance_of(const TopLevelScene& scene, unsigned embree_instance) {
@@ -170,7 +185,7 @@ void keep_first_after_previous(const RTCFilterFunctionNArguments* arguments) {
 
 bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
   const TopLevelScene& scene = scene_of(top_level);
-  if (is_masked_out(scene, ray)) return false;
+  if (!is_traceable(scene, ray)) return false;
   RTCRayHit query;
   set_ray(ray, first_included(ray.t_min), last_included(ray.t_max), query.ray);
   clear_hit(query.hit);
@@ -206,7 +221,7 @@ bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
 
 bool occluded(const kernel::TopLevel& top_level, const Ray& ray) {
   const TopLevelScene& scene = scene_of(top_level);
-  if (is_masked_out(scene, ray)) return false;
+  if (!is_traceable(scene, ray)) return false;
   RTCRay query;
   set_ray(ray, first_included(ray.t_min), last_included(ray.t_max), query);
   if (needs_filter(scene, ray)) {
@@ -223,7 +238,7 @@ bool occluded(const kernel::TopLevel& top_level, const Ray& ray) {
 
 bool next_hit(const kernel::TopLevel& top_level, const Ray& ray, const Hit* previous, Hit& hit) {
   const TopLevelScene& scene = scene_of(top_level);
-  if (is_masked_out(scene, ray)) return false;
+  if (!is_traceable(scene, ray)) return false;
   // Embree passes by boxes that lie behind the nearest hit so far or before tnear. A triangle whose t is rounded to a
   // value outside of its box would be lost that way, so the search reaches a little farther at both ends, and the
   // filter decides exactly.
