@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pathtracer/camera.hpp"
+#include "pathtracer/dispatch_plan.hpp"
 #include "pathtracer/image.hpp"
 #include "pathtracer/image_io.hpp"
 #include "pathtracer/lights.hpp"
@@ -69,16 +70,10 @@ class Renderer {
   ImageMetadata metadata() const;
 
  private:
-  struct Tile {
-    glm::uvec2 offset;
-    glm::uvec2 size;
-  };
-
-  void upload(const Scene& scene);
-  void build();
+  void build(const Scene& scene);
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
-  double dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
+  void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
   void clear_picture();
   void collect_ray_counts();
 
@@ -92,7 +87,7 @@ class Renderer {
   glm::vec3 background_{0};
   std::vector<std::string> warnings_;
 
-  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_, instances_;
+  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_;
   rhi::AccelerationStructureHandle bottom_level_, top_level_;
   rhi::ComputePipelineHandle pipeline_;
   rhi::BindGroupHandle scene_group_, picture_group_;
@@ -104,7 +99,7 @@ class Renderer {
   std::uint64_t ray_count_ = 0;
   double device_milliseconds_ = 0;
   double build_milliseconds_ = 0;
-  double pixel_samples_per_second_ = 0;  ///< measured; 0 before the first dispatch
+  Pace pace_{0.25};
 };
 
 }  // namespace tandem::pathtracer

@@ -1,0 +1,273 @@
+#include "pathtracer/renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pathtracer/error.hpp"
+#include "shaders/spirv.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+/// Pixel coordinates have 16 bits each in the random number generator's key.
+constexpr std::uint32_t maximum_side = 1u << 16;
+/// Far beyond use, and far from where the counts of rays could overflow.
+constexpr std::uint32_t maximum_depth = 1u << 16;
+
+template <typename T>
+rhi::BufferHandle upload(rhi::Device& device, rhi::CommandList& list, std::span<const T> values, rhi::BufferUsage usage,
+                         const std::string& label) {
+  rhi::BufferHandle buffer = device.create_buffer({.size = values.size_bytes(), .usage = usage, .label = label});
+  list.upload(buffer, 0, std::as_bytes(values));
+  return buffer;
+}
+
+std::string text_of(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
+
+}  // namespace
+
+void check(const RenderSettings& settings) {
+  if (settings.width == 0 || settings.height == 0)
+    throw Error(fmt::format("a picture of {}x{} has no pixels", settings.width, settings.height));
+  if (settings.width > maximum_side || settings.height > maximum_side)
+    throw Error(fmt::format("a picture of {}x{} is too large: a side has at most {} pixels", settings.width,
+                            settings.height, maximum_side));
+  if (settings.max_depth == 0 || settings.max_depth > maximum_depth)
+    throw Error(fmt::format("a path depth of {} is not between 1 and {}", settings.max_depth, maximum_depth));
+  if (!(settings.submission_seconds > 0)) throw Error("the time of a submission is not positive");
+  if (settings.background)
+    for (const float value : {settings.background->x, settings.background->y, settings.background->z})
+      if (!(value >= 0) || !std::isfinite(value))
+        throw Error(fmt::format("a background of {} is not finite and at least 0", text_of(*settings.background)));
+}
+
+Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings)
+    : device_(std::move(device)), scene_name_(scene.name) {
+  check(settings);
+  const rhi::DeviceInfo& info = device_->info();
+  if (!info.capabilities.ray_query)
+    throw rhi::Error(rhi::ErrorCode::unsupported, info.name,
+                     "the path tracer needs ray queries, which this device lacks");
+  // Before the upload: a camera that looks nowhere is known at once.
+  camera_ =
+      settings.camera ? *settings.camera : automatic_camera(scene, float(settings.width) / float(settings.height));
+  set_camera(constants_, camera_, settings.width, settings.height);
+  if (info.capabilities.timestamps) timestamps_ = device_->create_query_pool({.count = 2, .label = "dispatch times"});
+  build(scene);
+  pipeline_ = device_->create_compute_pipeline(
+      {.shader = device_->create_shader_module({.spirv = shaders::path_trace(), .label = "path_trace.comp"}),
+       .specialization = {},
+       .label = "path tracer"});
+  scene_group_ = device_->create_bind_group({.pipeline = pipeline_,
+                                             .set = 0,
+                                             .entries = {{.binding = 0, .resource = top_level_},
+                                                         {.binding = 1, .resource = rhi::BufferRange{positions_}},
+                                                         {.binding = 2, .resource = rhi::BufferRange{normals_}},
+                                                         {.binding = 3, .resource = rhi::BufferRange{triangles_}},
+                                                         {.binding = 4, .resource = rhi::BufferRange{materials_}},
+                                                         {.binding = 5, .resource = rhi::BufferRange{lights_}}},
+                                             .label = "scene"});
+  restart(settings);
+}
+
+void Renderer::build(const Scene& scene) {
+  using rhi::BufferUsage;
+  vertex_count_ = static_cast<std::uint32_t>(scene.positions.size());
+  triangle_count_ = static_cast<std::uint32_t>(scene.triangles.size());
+  std::vector<GpuLight> lights = build_lights(scene);
+  light_count_ = static_cast<std::uint32_t>(lights.size());
+  if (lights.empty()) lights.push_back({});  // no buffer may be empty; the shader does not read it
+  std::vector<std::uint32_t> indices;
+  indices.reserve(3 * scene.triangles.size());
+  for (const GpuTriangle& triangle : scene.triangles)
+    indices.insert(indices.end(), std::begin(triangle.vertices), std::end(triangle.vertices));
+
+  const rhi::CommandListHandle list = device_->create_command_list("upload of " + scene_name_);
+  const auto upload_all = [&]<typename T>(const std::vector<T>& values, BufferUsage usage, const char* label) {
+    return upload(*device_, *list, std::span<const T>(values), usage, label);
+  };
+  positions_ =
+      upload_all(scene.positions, BufferUsage::storage | BufferUsage::acceleration_structure_input, "positions");
+  normals_ = upload_all(scene.normals, BufferUsage::storage, "normals");
+  triangles_ = upload_all(scene.triangles, BufferUsage::storage, "triangles");
+  materials_ = upload_all(scene.materials, BufferUsage::storage, "materials");
+  lights_ = upload_all(lights, BufferUsage::storage, "lights");
+  const rhi::BufferHandle index_buffer = upload_all(indices, BufferUsage::acceleration_structure_input, "indices");
+
+  const rhi::BottomLevelDesc bottom{.geometries = {rhi::TriangleGeometry{.vertices = {positions_},
+                                                                         .vertex_count = vertex_count_,
+                                                                         .indices = {index_buffer},
+                                                                         .index_format = rhi::IndexFormat::uint32,
+                                                                         .triangle_count = triangle_count_,
+                                                                         .transform = {},
+                                                                         .flags = rhi::GeometryFlags::opaque}},
+                                    .label = scene_name_};
+  bottom_level_ = device_->create_bottom_level(bottom);
+  const std::vector<rhi::InstanceDesc> instances = {rhi::make_instance(*bottom_level_)};
+  const rhi::BufferHandle instance_buffer =
+      upload_all(instances, BufferUsage::acceleration_structure_input, "instances");
+  rhi::TopLevelDesc top;
+  top.instances.buffer = instance_buffer;
+  top.instance_count = 1;
+  top.label = scene_name_;
+  top_level_ = device_->create_top_level(top);
+  device_->submit(list)->wait();
+
+  build_milliseconds_ = execute("build of " + scene_name_, [&](rhi::CommandList& commands) {
+    commands.build_bottom_level(bottom_level_, bottom);
+    commands.build_top_level(top_level_, top);
+  });
+}
+
+double Renderer::execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record) {
+  const rhi::CommandListHandle list = device_->create_command_list(label);
+  if (timestamps_) list->write_timestamp(timestamps_, 0);
+  record(*list);
+  if (timestamps_) list->write_timestamp(timestamps_, 1);
+  const auto start = std::chrono::steady_clock::now();
+  device_->submit(list)->wait();
+  const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
+  if (!timestamps_) return elapsed.count();
+  const std::vector<double> times = timestamps_->timestamps_ns();
+  return (times[1] - times[0]) * 1e-6;
+}
+
+void Renderer::restart(const RenderSettings& settings) {
+  check(settings);
+  const Camera camera = settings.camera ? *settings.camera : camera_;
+  set_camera(constants_, camera, settings.width, settings.height);
+  camera_ = camera;
+  const bool resized = !picture_group_ || settings.width != settings_.width || settings.height != settings_.height;
+  settings_ = settings;
+  background_ = settings.background.value_or(glm::vec3(light_count_ == 0 ? 1.0f : 0.0f));
+  warnings_.clear();
+  if (light_count_ == 0 && !settings.background)
+    warnings_.push_back(fmt::format("{}: nothing emits light, so a white background of radiance 1 does", scene_name_));
+  constants_.background = background_;
+  constants_.light_count = light_count_;
+  constants_.max_depth = settings.max_depth;
+  constants_.seed = settings.seed;
+  constants_.resolution = {settings.width, settings.height};
+  if (resized) {
+    const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+    radiance_sum_ = device_->create_buffer(
+        {.size = pixels * sizeof(glm::vec3), .usage = rhi::BufferUsage::storage, .label = "radiance sums"});
+    ray_counts_ = device_->create_buffer(
+        {.size = pixels * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = "ray counts"});
+    picture_group_ =
+        device_->create_bind_group({.pipeline = pipeline_,
+                                    .set = 1,
+                                    .entries = {{.binding = 0, .resource = rhi::BufferRange{radiance_sum_}},
+                                                {.binding = 1, .resource = rhi::BufferRange{ray_counts_}}},
+                                    .label = "picture"});
+  }
+  pace_ = Pace(settings.submission_seconds);
+  clear_picture();
+}
+
+void Renderer::clear_picture() {
+  const rhi::CommandListHandle list = device_->create_command_list("clear the picture");
+  list->fill({radiance_sum_}, 0);
+  list->fill({ray_counts_}, 0);
+  device_->submit(list)->wait();
+  samples_ = 0;
+  ray_count_ = 0;
+  device_milliseconds_ = 0;
+}
+
+void Renderer::collect_ray_counts() {
+  std::vector<std::uint32_t> counts(ray_counts_->size() / sizeof(std::uint32_t));
+  device_->download(ray_counts_, 0, std::as_writable_bytes(std::span(counts)));
+  for (const std::uint32_t count : counts) ray_count_ += count;
+  const rhi::CommandListHandle list = device_->create_command_list("clear the ray counts");
+  list->fill({ray_counts_}, 0);
+  device_->submit(list)->wait();
+}
+
+void Renderer::dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count) {
+  constants_.first_sample = first_sample;
+  constants_.sample_count = sample_count;
+  constants_.tile_offset = tile.offset;
+  constants_.tile_size = tile.size;
+  const std::array<std::uint32_t, 3> workgroup = pipeline_->reflection().workgroup_size;
+  const auto start = std::chrono::steady_clock::now();
+  device_milliseconds_ += execute("path tracing", [&](rhi::CommandList& list) {
+    list.dispatch({.pipeline = pipeline_,
+                   .bind_groups = {scene_group_, picture_group_},
+                   .push_constants = std::as_bytes(std::span(&constants_, 1)),
+                   .workgroup_count = {(tile.size.x + workgroup[0] - 1) / workgroup[0],
+                                       (tile.size.y + workgroup[1] - 1) / workgroup[1], 1}});
+  });
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  pace_.measured(double(tile.size.x) * double(tile.size.y) * sample_count, elapsed.count());
+}
+
+bool Renderer::render(std::uint32_t samples, const Progress& progress) {
+  if (samples > std::numeric_limits<std::uint32_t>::max() - samples_)
+    throw Error(fmt::format("{} samples after {} are more than can be counted", samples, samples_));
+  const glm::uvec2 resolution(settings_.width, settings_.height);
+  const double pixels = double(resolution.x) * double(resolution.y);
+  // A sample traces at most two rays for each segment: its own and one to a light.
+  const std::uint32_t uncollected_limit = std::numeric_limits<std::uint32_t>::max() / (2 * settings_.max_depth);
+  const std::uint32_t first = samples_;
+  const std::uint32_t end = samples_ + samples;
+  std::uint32_t uncollected = 0;
+  while (samples_ < end) {
+    if (uncollected == uncollected_limit) {
+      collect_ray_counts();
+      uncollected = 0;
+    }
+    const std::uint32_t most = std::min(end - samples_, uncollected_limit - uncollected);
+    const auto batch = static_cast<std::uint32_t>(std::clamp(pace_.budget() / pixels, 1.0, double(most)));
+    for (TileCursor cursor(resolution, settings_.maximum_tile); !cursor.at_end();) {
+      const Tile tile = cursor.next(pace_.budget() / batch);
+      dispatch(tile, samples_, batch);
+      if (!progress) continue;
+      const double rows = double(tile.offset.y) * resolution.x + double(tile.offset.x + tile.size.x) * tile.size.y;
+      if (!progress((double(samples_ - first) + rows / pixels * batch) / samples)) {
+        clear_picture();
+        return false;
+      }
+    }
+    samples_ += batch;
+    uncollected += batch;
+  }
+  if (uncollected != 0) collect_ray_counts();
+  return true;
+}
+
+Image Renderer::image() const {
+  Image image{settings_.width, settings_.height, {}};
+  image.pixels.resize(std::size_t{image.width} * image.height, glm::vec3(0));
+  if (samples_ == 0) return image;
+  device_->download(radiance_sum_, 0, std::as_writable_bytes(std::span(image.pixels)));
+  for (glm::vec3& pixel : image.pixels) pixel /= static_cast<float>(samples_);
+  return image;
+}
+
+ImageMetadata Renderer::metadata() const {
+  const rhi::DeviceInfo& device = device_->info();
+  return {{"scene", scene_name_},
+          {"triangles", fmt::to_string(triangle_count_)},
+          {"device", device.name},
+          {"hardware", device.description},
+          {"driver", device.driver},
+          {"size", fmt::format("{}x{}", settings_.width, settings_.height)},
+          {"samples", fmt::to_string(samples_)},
+          {"depth", fmt::to_string(settings_.max_depth)},
+          {"seed", fmt::to_string(settings_.seed)},
+          {"camera", fmt::format("position {} target {} up {} fov {}", text_of(camera_.position),
+                                 text_of(camera_.target), text_of(camera_.up), camera_.vertical_fov)},
+          {"background", text_of(background_)},
+          {"rays", fmt::to_string(ray_count_)},
+          {"milliseconds", fmt::format("{:.3f}", device_milliseconds_)},
+          {"version", TANDEM_VERSION}};
+}
+
+}  // namespace tandem::pathtracer
