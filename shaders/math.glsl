@@ -1,9 +1,9 @@
 // Arithmetic that gives the same bits on every device: only + - * / sqrt floor and integer operations, in a written
 // order, never contracted (every function is `precise`), never a built-in transcendental, dot, cross or normalize.
 // Polynomials are minimax fits (Remez) with coefficients rounded to float. Error bounds are in units in the last place
-// (ULP) of the exact result and hold over the stated domain; tests/shaders asserts them. No function here returns a NaN
-// or an infinity for any finite argument, and none returns a subnormal number, which a device may flush: it returns 0
-// instead.
+// (ULP) of the exact result and hold over the stated domain; tests/shaders asserts them. The transcendental functions
+// return neither a NaN nor an infinity, for any argument, nor a subnormal number, which a device may flush to zero: they
+// return 0 instead.
 
 #ifndef TANDEM_MATH
 #define TANDEM_MATH

@@ -1,0 +1,156 @@
+#include "tests/shaders/test_scene.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <glm/geometric.hpp>
+
+#include "tests/support/device_test.hpp"
+
+namespace tandem::test {
+
+using pathtracer::GpuMaterial;
+using pathtracer::MaterialModel;
+using pathtracer::RenderConstants;
+
+std::uint32_t TestScene::add_material(const GpuMaterial& material) {
+  materials.push_back(material);
+  return static_cast<std::uint32_t>(materials.size() - 1);
+}
+
+void TestScene::add_quad(const glm::vec3& origin, const glm::vec3& u, const glm::vec3& v, std::uint32_t material) {
+  const auto first = static_cast<std::uint32_t>(positions.size());
+  positions.insert(positions.end(), {origin, origin + u, origin + u + v, origin + v});
+  triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = material});
+  triangles.push_back({.vertices = {first, first + 2, first + 3}, .material = material});
+}
+
+void TestScene::add_lights() {
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    if (materials[triangles[i].material].emission == glm::vec3(0)) continue;
+    lights.push_back({.triangle = i,
+                      .alias = static_cast<std::uint32_t>(lights.size()),
+                      .threshold = 0xffffffffu,
+                      .area_density = 0.0f});
+  }
+  for (pathtracer::GpuLight& light : lights) {
+    const std::uint32_t* vertices = triangles[light.triangle].vertices;
+    const float area = 0.5f * glm::length(glm::cross(positions[vertices[1]] - positions[vertices[0]],
+                                                     positions[vertices[2]] - positions[vertices[0]]));
+    light.area_density = 1.0f / (static_cast<float>(lights.size()) * area);
+  }
+}
+
+GpuMaterial diffuse(const glm::vec3& albedo, const glm::vec3& emission) {
+  return {.base_color = albedo,
+          .model = MaterialModel::diffuse,
+          .emission = emission,
+          .ior = 1.0f,
+          .reflectance = glm::vec3(0),
+          .padding0 = 0.0f,
+          .transmittance = glm::vec3(1),
+          .padding1 = 0.0f};
+}
+
+GpuMaterial mirror(const glm::vec3& reflectance) {
+  GpuMaterial material = diffuse(glm::vec3(0));
+  material.model = MaterialModel::mirror;
+  material.reflectance = reflectance;
+  return material;
+}
+
+GpuMaterial glass(float ior) {
+  GpuMaterial material = diffuse(glm::vec3(0));
+  material.model = MaterialModel::dielectric;
+  material.ior = ior;
+  return material;
+}
+
+DeviceScene upload(rhi::Device& device, const TestScene& scene) {
+  DeviceScene result;
+  result.positions = buffer_of(device, scene.positions, "positions");
+  result.normals = buffer_of(device, scene.positions, "normals");
+  result.triangles = buffer_of(device, scene.triangles, "triangles");
+  result.materials = buffer_of(device, scene.materials, "materials");
+  result.lights =
+      buffer_of(device, scene.lights.empty() ? std::vector<pathtracer::GpuLight>(1) : scene.lights, "lights");
+
+  std::vector<std::uint32_t> indices;
+  for (const pathtracer::GpuTriangle& triangle : scene.triangles)
+    indices.insert(indices.end(), triangle.vertices, triangle.vertices + 3);
+  rhi::TriangleGeometry geometry;
+  geometry.vertices = {.buffer = result.positions};
+  geometry.vertex_count = static_cast<std::uint32_t>(scene.positions.size());
+  geometry.indices = {.buffer = buffer_of(device, indices, "indices")};
+  geometry.index_format = rhi::IndexFormat::uint32;
+  geometry.triangle_count = static_cast<std::uint32_t>(scene.triangles.size());
+  const rhi::BottomLevelDesc bottom_level = {.geometries = {geometry}, .label = "scene"};
+  result.bottom_level = device.create_bottom_level(bottom_level);
+
+  const std::vector<rhi::InstanceDesc> instances = {rhi::make_instance(*result.bottom_level)};
+  const rhi::TopLevelDesc top_level = {
+      .instances = {.buffer = buffer_of(device, instances, "instances")}, .instance_count = 1, .label = "scene"};
+  result.top_level = device.create_top_level(top_level);
+  rhi::CommandListHandle list = device.create_command_list("build the scene");
+  list->build_bottom_level(result.bottom_level, bottom_level);
+  list->build_top_level(result.top_level, top_level);
+  device.submit(list)->wait();
+  return result;
+}
+
+RenderConstants render_constants(const glm::vec3& position, std::uint32_t width, std::uint32_t height,
+                                 const TestScene& scene) {
+  return {.camera_position = position,
+          .first_sample = 0,
+          .camera_right = {1, 0, 0},
+          .sample_count = 1,
+          .camera_up = {0, 1, 0},
+          .max_depth = 8,
+          .camera_forward = {0, 0, -1},
+          .seed = 1,
+          .background = glm::vec3(0),
+          .light_count = static_cast<std::uint32_t>(scene.lights.size()),
+          .resolution = {width, height},
+          .tile_offset = {0, 0},
+          .tile_size = {width, height}};
+}
+
+Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches) {
+  std::ifstream file(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "shaders" / "path_trace.comp");
+  const std::string source(std::istreambuf_iterator<char>(file), {});
+  const rhi::ComputePipelineHandle pipeline = compute_pipeline(device, source, "path_trace");
+
+  const std::size_t pixel_count = std::size_t{dispatches.front().resolution.x} * dispatches.front().resolution.y;
+  const rhi::BufferHandle sum = buffer_of(device, std::vector<float>(3 * pixel_count), "radiance sum");
+  const rhi::BufferHandle counts = buffer_of(device, std::vector<std::uint32_t>(pixel_count), "ray counts");
+  const auto whole = [](const rhi::BufferHandle& buffer) { return rhi::BufferRange{.buffer = buffer}; };
+  const rhi::BindGroupHandle scene_group =
+      device.create_bind_group({.pipeline = pipeline,
+                                .set = 0,
+                                .entries = {{.binding = 0, .resource = scene.top_level},
+                                            {.binding = 1, .resource = whole(scene.positions)},
+                                            {.binding = 2, .resource = whole(scene.normals)},
+                                            {.binding = 3, .resource = whole(scene.triangles)},
+                                            {.binding = 4, .resource = whole(scene.materials)},
+                                            {.binding = 5, .resource = whole(scene.lights)}},
+                                .label = "scene"});
+  const rhi::BindGroupHandle film_group = device.create_bind_group(
+      {.pipeline = pipeline,
+       .set = 1,
+       .entries = {{.binding = 0, .resource = whole(sum)}, {.binding = 1, .resource = whole(counts)}},
+       .label = "film"});
+  rhi::CommandListHandle list = device.create_command_list("path trace");
+  for (const RenderConstants& constants : dispatches) {
+    list->dispatch({.pipeline = pipeline,
+                    .bind_groups = {scene_group, film_group},
+                    .push_constants = std::as_bytes(std::span(&constants, 1)),
+                    .workgroup_count = {(constants.tile_size.x + 7) / 8, (constants.tile_size.y + 7) / 8, 1}});
+  }
+  device.submit(list)->wait();
+  return {.radiance_sum = contents<float>(device, sum, 3 * pixel_count),
+          .ray_counts = contents<std::uint32_t>(device, counts, pixel_count)};
+}
+
+}  // namespace tandem::test

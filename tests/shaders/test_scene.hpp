@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "pathtracer/scene_buffers.hpp"
+#include "rhi/device.hpp"
+
+namespace tandem::test {
+
+/// A scene made by hand, and what the path tracer reads of it.
+struct TestScene {
+  std::vector<glm::vec3> positions;
+  std::vector<pathtracer::GpuTriangle> triangles;
+  std::vector<pathtracer::GpuMaterial> materials;
+  std::vector<pathtracer::GpuLight> lights;
+
+  /// A diffuse, black, not emissive material to start from. Returns its index.
+  std::uint32_t add_material(const pathtracer::GpuMaterial& material);
+  /// The parallelogram origin, origin + u, origin + u + v, origin + v; seen counter-clockwise from u x v.
+  void add_quad(const glm::vec3& origin, const glm::vec3& u, const glm::vec3& v, std::uint32_t material);
+  /// Makes every emissive triangle a light, all with equal probability.
+  void add_lights();
+};
+
+pathtracer::GpuMaterial diffuse(const glm::vec3& albedo, const glm::vec3& emission = glm::vec3(0));
+pathtracer::GpuMaterial mirror(const glm::vec3& reflectance);
+pathtracer::GpuMaterial glass(float ior);
+
+/// A scene on a device: the buffers of shaders/scene.glsl and one instance of all triangles.
+struct DeviceScene {
+  rhi::BufferHandle positions;
+  rhi::BufferHandle normals;
+  rhi::BufferHandle triangles;
+  rhi::BufferHandle materials;
+  rhi::BufferHandle lights;
+  rhi::AccelerationStructureHandle bottom_level;
+  rhi::AccelerationStructureHandle top_level;
+};
+
+DeviceScene upload(rhi::Device& device, const TestScene& scene);
+
+/// A camera at `position` that looks along -z with y up and half a field of view of 45 degrees each way.
+pathtracer::RenderConstants render_constants(const glm::vec3& position, std::uint32_t width, std::uint32_t height,
+                                             const TestScene& scene);
+
+struct Rendering {
+  std::vector<float> radiance_sum;  ///< r, g, b of each pixel
+  std::vector<std::uint32_t> ray_counts;
+};
+
+/// Runs path_trace.comp once for each of `dispatches`, which share a resolution.
+Rendering path_trace(rhi::Device& device, const DeviceScene& scene,
+                     const std::vector<pathtracer::RenderConstants>& dispatches);
+
+}  // namespace tandem::test
