@@ -224,11 +224,11 @@ precise float asin_kernel(float x) {
   return x + x * z * (0.166667536 + z * (0.0749523267 + z * (0.045478344 + z * (0.0241409857 + z * 0.0422305539))));
 }
 
-/// The angle in [0, pi] whose cosine is x, 1.5 ULP. x is clamped to [-1, 1]; NaN gives pi / 2.
+/// The angle in [0, pi] whose cosine is x, 1.5 ULP. x is clamped to [-1, 1]; NaN gives pi.
 precise float det_acos(float x) {
-  if (!(abs(x) > 0.5)) return HALF_PI - (asin_kernel(x) - HALF_PI_LOW);
+  if (abs(x) <= 0.5) return HALF_PI - (asin_kernel(x) - HALF_PI_LOW);
   if (x >= 1.0) return 0.0;
-  if (x <= -1.0) return PI;
+  if (!(x > -1.0)) return PI;
   // acos(x) = 2 asin(sqrt((1 - x) / 2)), in which 1 - |x| is exact.
   float half_angle = asin_kernel(det_sqrt(0.5 - 0.5 * abs(x)));
   return x > 0.0 ? 2.0 * half_angle : 2.0 * (HALF_PI - (half_angle - HALF_PI_LOW));

@@ -3,34 +3,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
 #include <vector>
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "tests/shaders/function_kernel.hpp"
+#include "tests/shaders/random_source.hpp"
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;
 
 namespace {
 
-class Random {
- public:
-  explicit Random(std::uint32_t seed) : generator_(seed) {}
-  double uniform(double low, double high) { return low + (high - low) * (generator_() / 4294967296.0); }
-  glm::dvec3 in_cube() { return {uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)}; }
-  glm::dvec3 direction() {
-    for (;;) {
-      const glm::dvec3 v = in_cube();
-      if (glm::dot(v, v) > 0.01 && glm::dot(v, v) < 1.0) return glm::normalize(v);
-    }
-  }
+glm::dvec3 in_cube(test::RandomSource& random) {
+  const double x = random.uniform(-1, 1), y = random.uniform(-1, 1);
+  return {x, y, random.uniform(-1, 1)};
+}
 
- private:
-  std::mt19937 generator_;
-};
+glm::dvec3 direction(test::RandomSource& random) {
+  for (;;) {
+    const glm::dvec3 v = in_cube(random);
+    if (glm::dot(v, v) > 0.01 && glm::dot(v, v) < 1.0) return glm::normalize(v);
+  }
+}
 
 void append(std::vector<float>& values, const glm::vec3& v) { values.insert(values.end(), {v.x, v.y, v.z}); }
 
@@ -48,9 +44,9 @@ const std::string triangle_of_row = R"(
 }  // namespace
 
 TANDEM_DEVICE_TEST("make_frame gives right-handed orthonormal frames for all normals") {
-  Random random(1);
+  test::RandomSource random(1);
   std::vector<float> normals = {0, 0, 1, 0, 0, -1, 1, 0, 0, 0, -1, 0, 1e-20f, 0, -1, 0, 1e-7f, -1};
-  for (int i = 0; i < 100000; ++i) append(normals, random.direction());
+  for (int i = 0; i < 100000; ++i) append(normals, direction(random));
   const std::vector<float> outputs = test::run(device,
                                                {.includes = "#include \"geometry/frame.glsl\"",
                                                 .body = R"(
@@ -73,11 +69,11 @@ TANDEM_DEVICE_TEST("make_frame gives right-handed orthonormal frames for all nor
 }
 
 TANDEM_DEVICE_TEST("A hit point is where the ray meets the triangle") {
-  Random random(2);
+  test::RandomSource random(2);
   std::vector<float> inputs;
   std::vector<glm::dvec3> exact;
   while (exact.size() < 50000) {
-    const glm::vec3 a = random.in_cube(), b = random.in_cube(), c = random.in_cube(), origin = 3.0 * random.in_cube();
+    const glm::vec3 a = in_cube(random), b = in_cube(random), c = in_cube(random), origin = 3.0 * in_cube(random);
     const glm::dvec3 normal = glm::cross(glm::dvec3(b - a), glm::dvec3(c - a));
     double u = random.uniform(0, 1), v = random.uniform(0, 1);
     if (u + v > 1.0) {
@@ -152,15 +148,15 @@ TANDEM_DEVICE_TEST(
 }
 
 TANDEM_DEVICE_TEST("An offset point is on its side of the surface, and close, at every scale") {
-  Random random(3);
+  test::RandomSource random(3);
   std::vector<float> inputs;
   std::vector<double> scales;
   for (int exponent = -6; exponent <= 6; ++exponent) {
     const double scale = std::pow(10.0, exponent);
     for (int i = 0; i < 4000; ++i) {
-      std::array<glm::dvec3, 3> corners = {random.in_cube(), random.in_cube(), random.in_cube()};
+      std::array<glm::dvec3, 3> corners = {in_cube(random), in_cube(random), in_cube(random)};
       const int kind = i % 4;
-      if (kind == 1) corners = {random.in_cube() * 0.01, random.in_cube() * 0.01, random.in_cube() * 0.01};
+      if (kind == 1) corners = {in_cube(random) * 0.01, in_cube(random) * 0.01, in_cube(random) * 0.01};
       if (kind == 2)
         for (glm::dvec3& corner : corners) corner.y = 0.0;  // a floor through the origin
       if (kind == 3)

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "tests/shaders/function_kernel.hpp"
+#include "tests/shaders/random_source.hpp"
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;
@@ -30,11 +30,10 @@ test::FunctionKernel unary(const std::string& function) { return math_kernel(fun
 /// Floats of all magnitudes in [low, high], spread over their bit patterns; no subnormal numbers, which a device may
 /// flush to zero.
 std::vector<float> floats_between(float low, float high, std::size_t count) {
-  std::mt19937 random(17);
+  test::RandomSource random(17);
   std::vector<float> values = {low, high, 0.0f, -0.0f, 1.0f, -1.0f, 0.5f, -0.5f, smallest_normal, -smallest_normal};
-  std::uniform_real_distribution<float> uniform(low, high);
-  while (values.size() < count / 2) values.push_back(uniform(random));
-  while (values.size() < count) values.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random())));
+  while (values.size() < count / 2) values.push_back(static_cast<float>(random.uniform(low, high)));
+  while (values.size() < count) values.push_back(std::bit_cast<float>(random.bits()));
   std::erase_if(values,
                 [&](float x) { return !(x >= low && x <= high) || (x != 0.0f && std::abs(x) < smallest_normal); });
   return values;
@@ -92,10 +91,8 @@ TANDEM_DEVICE_TEST("Mathematical functions are as exact as their docstrings say"
 }
 
 TANDEM_DEVICE_TEST("det_pow is as exact as its docstring says") {
-  std::mt19937 random(3);
-  const auto uniform = [&](double low, double high) {
-    return static_cast<float>(low + (high - low) * (random() / 4294967296.0));
-  };
+  test::RandomSource random(3);
+  const auto uniform = [&](double low, double high) { return static_cast<float>(random.uniform(low, high)); };
   std::vector<float> inputs;
   for (int i = 0; i < 1 << 18; ++i) {
     inputs.insert(inputs.end(), {std::exp2(uniform(-126, 127.99)), uniform(-4, 4)});
@@ -120,7 +117,7 @@ TANDEM_DEVICE_TEST("det_pow is as exact as its docstring says") {
 }
 
 TANDEM_DEVICE_TEST("Mathematical functions give finite results for every argument") {
-  for (const char* function : {"det_sin", "det_cos", "det_exp", "det_log", "det_acos", "det_atan"}) {
+  for (const std::string function : {"det_sin", "det_cos", "det_exp", "det_log", "det_acos", "det_atan"}) {
     const std::vector<float> outputs = test::run(device, unary(function), hostile);
     for (std::size_t i = 0; i < hostile.size(); ++i) {
       INFO(function, " of ", hostile[i], " is ", outputs[i]);
@@ -153,15 +150,15 @@ TANDEM_DEVICE_TEST("Exact values of the mathematical functions") {
 }
 
 TEST_CASE("Every device computes the same bits") {
-  std::mt19937 random(5);
+  test::RandomSource random(5);
   std::vector<float> all_magnitudes;
   while (all_magnitudes.size() < 2000000) {
-    const float value = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    const float value = std::bit_cast<float>(random.bits());
     if (std::isfinite(value) && std::abs(value) >= smallest_normal) all_magnitudes.push_back(value);
   }
   // Components of vectors: no quotient of two is subnormal, which a device may flush.
   std::vector<float> moderate;
-  for (int i = 0; i < 2000000; ++i) moderate.push_back(static_cast<float>(random() / 2147483648.0 - 1.0) * 1000.0f);
+  for (int i = 0; i < 2000000; ++i) moderate.push_back(static_cast<float>(random.uniform(-1000, 1000)));
 
   const auto check = [](const test::FunctionKernel& kernel, const std::vector<float>& inputs) {
     const std::vector<std::string>& names = test::device_names();
@@ -195,11 +192,11 @@ TEST_CASE("Every device computes the same bits") {
 }
 
 TANDEM_DEVICE_TEST("TANDEM_EXACT_DIVISION gives the correctly rounded quotient and root") {
-  std::mt19937 random(7);
+  test::RandomSource random(7);
   std::vector<float> inputs;
   for (int i = 0; i < 1 << 19; ++i) {
-    const auto magnitude = [&] { return std::exp2(static_cast<float>(random() / 4294967296.0 * 80 - 40)); };
-    inputs.insert(inputs.end(), {magnitude(), random() % 2 == 0 ? magnitude() : -magnitude()});
+    const auto magnitude = [&] { return std::exp2(static_cast<float>(random.uniform(-40, 40))); };
+    inputs.insert(inputs.end(), {magnitude(), random.bits() % 2 == 0 ? magnitude() : -magnitude()});
   }
   test::FunctionKernel kernel = {.includes = "#define TANDEM_EXACT_DIVISION\n#include \"math.glsl\"",
                                  .body = R"(
@@ -217,11 +214,11 @@ TANDEM_DEVICE_TEST("TANDEM_EXACT_DIVISION gives the correctly rounded quotient a
 }
 
 TANDEM_DEVICE_TEST("det_normalize gives unit vectors at all scales and its fallback where there is no direction") {
-  std::mt19937 random(11);
+  test::RandomSource random(11);
   std::vector<float> inputs;
   for (int i = 0; i < 100000; ++i) {
-    const double scale = std::exp2(random() / 4294967296.0 * 220 - 110);
-    for (int k = 0; k < 3; ++k) inputs.push_back(static_cast<float>((random() / 2147483648.0 - 1.0) * scale));
+    const double scale = std::exp2(random.uniform(-110, 110));
+    for (int k = 0; k < 3; ++k) inputs.push_back(static_cast<float>(random.uniform(-scale, scale)));
   }
   const test::FunctionKernel kernel = {.includes = "#include \"math.glsl\"",
                                        .body = R"(

@@ -4,11 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "tests/shaders/random_source.hpp"
 #include "tests/shaders/test_scene.hpp"
 #include "tests/support/device_test.hpp"
 
@@ -96,8 +96,8 @@ struct Query {
 
 TANDEM_DEVICE_TEST(
     "From inside a sphere every ray meets the sphere, none where it starts, and nothing lies between two points") {
-  std::mt19937 random(23);
-  const auto uniform = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+  test::RandomSource random(23);
+  const auto uniform = [&] { return static_cast<float>(random.bits() >> 8) * 0x1p-24f; };
   // The last sphere lies ten radii from the origin: its coordinates have fewer bits for its shape.
   const std::vector<std::pair<glm::dvec3, double>> spheres = {
       {{0, 0, 0}, 1}, {{0, 0, 0}, 1e-4}, {{0, 0, 0}, 1e4}, {{0.5, 0, -0.5}, 1}, {{1000, -700, 500}, 100}};
@@ -105,17 +105,17 @@ TANDEM_DEVICE_TEST(
     INFO("radius ", radius);
     const test::TestScene scene = sphere(centre, radius);
     const test::DeviceScene device_scene = test::upload(device, scene);
+    const auto triangle_count = static_cast<std::uint32_t>(scene.triangles.size());
     std::vector<Query> queries;
     for (int i = 0; i < 200000; ++i) {
-      const auto triangle = [&] { return static_cast<std::uint32_t>(random() % scene.triangles.size()); };
+      const auto triangle = [&] { return random.bits() % triangle_count; };
       // Two points on the same triangle have nothing between them but that triangle itself: no question for a chord.
       Query query = {.triangles = {triangle(), triangle()},
                      .points = {{uniform(), uniform()}, {uniform(), uniform()}},
                      .direction = {uniform(), uniform()},
                      .flatness = i % 2 == 0 ? 1.0f : 1e-3f,
                      .padding = 0.0f};
-      if (query.triangles[0] == query.triangles[1])
-        query.triangles[1] = (query.triangles[1] + 1000) % scene.triangles.size();
+      if (query.triangles[0] == query.triangles[1]) query.triangles[1] = (query.triangles[1] + 1000) % triangle_count;
       queries.push_back(query);
     }
     const rhi::ComputePipelineHandle pipeline = test::compute_pipeline(device, leaving_rays, "leaving rays");
