@@ -49,9 +49,9 @@ class Reflector {
                   "the SPIR-V module must have exactly one entry point, not " + std::to_string(entry_points.size()));
     result_.entry_point = entry_points[0].name;
     result_.stage = stage_of(entry_points[0].execution_model, label_);
-    compiler_.set_enabled_interface_variables(compiler_.get_active_interface_variables());
 
-    const spirv_cross::ShaderResources resources = compiler_.get_shader_resources();
+    const spirv_cross::ShaderResources resources =
+        compiler_.get_shader_resources(compiler_.get_active_interface_variables());
     refuse(resources.subpass_inputs, "a subpass input");
     refuse(resources.atomic_counters, "an atomic counter");
     add(resources.uniform_buffers, BindingKind::uniform_buffer);
