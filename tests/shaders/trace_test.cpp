@@ -78,8 +78,8 @@ void main() {
   vec3 direction = det_normalize(to_world(make_frame(from_normal), vec3(local.xy, local.z * queries[row].flatness)), from_normal);
   vec3 origin = offset_point(from, from_normal, from_offset, direction);
   uint hit = trace_closest(origin, direction);
-  bool occluded = trace_occluded(offset_point(from, from_normal, from_offset, to - from),
-                                 offset_point(to, to_normal, to_offset, from - to));
+  bool occluded = trace_occluded(offset_point(from, from_normal, from_offset, from_normal),
+                                 offset_point(to, to_normal, to_offset, to_normal));
   answers[row] = (hit == queries[row].triangles.x ? 1u : 0u) | (hit == NO_TRIANGLE ? 2u : 0u) | (occluded ? 4u : 0u);
 }
 )";
