@@ -1,0 +1,39 @@
+#include "devices/devices.hpp"
+
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "rhi_cpu/device.hpp"
+#include "rhi_vulkan/device.hpp"
+#if __has_include("shaders/kernels.hpp")
+#include "shaders/kernels.hpp"
+#endif
+
+namespace tandem {
+
+std::vector<rhi::DeviceInfo> enumerate_devices(const rhi::MessageCallback& on_message) {
+  std::vector<rhi::DeviceInfo> devices = {cpu::device_info()};
+  for (rhi::DeviceInfo& device : vulkan::enumerate(on_message)) devices.push_back(std::move(device));
+  return devices;
+}
+
+rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
+  const std::string_view name = desc.name;
+  if (name == "cpu") {
+#if __has_include("shaders/kernels.hpp")
+    const std::span<const cpu::PrecompiledKernel> kernels = shaders::kernels();
+    return cpu::create_device(desc, {kernels.begin(), kernels.end()});
+#else
+    return cpu::create_device(desc, {});
+#endif
+  }
+  if (name == "vulkan" || name.starts_with("vulkan:")) return vulkan::create_device(desc);
+  std::vector<std::string> names;
+  for (const rhi::DeviceInfo& device : enumerate_devices()) names.push_back(device.name);
+  throw rhi::Error(rhi::ErrorCode::no_such_device, name,
+                   fmt::format("there is no such device; there are: {}", fmt::join(names, ", ")));
+}
+
+}  // namespace tandem
