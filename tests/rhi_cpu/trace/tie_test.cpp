@@ -61,11 +61,17 @@ TEST_CASE("coincident triangles of several geometries and instances are all cand
 }
 
 TEST_CASE("overlapping coplanar triangles of different shapes are all candidates, once each") {
-  // A tilted plane far from the origin: every triangle gives a t of its own rounding, and none may be lost by it.
+  // Far from the origin every triangle gives a t of its own rounding, and none may be lost by it. An axis-aligned plane
+  // has boxes without thickness, which the rounded hits lie outside of.
   const cpu::EmbreeDevice device;
   std::mt19937 random(31);
   std::uniform_real_distribution<float> uniform(-1, 1);
-  const vec3 axis_u(0.8f, 0.1f, 0.59f), axis_v(-0.3f, 0.9f, 0.31f);
+  vec3 axis_u(0.8f, 0.1f, 0.59f), axis_v(-0.3f, 0.9f, 0.31f);
+  SUBCASE("tilted") {}
+  SUBCASE("axis-aligned") {
+    axis_u = vec3(1, 0, 0);
+    axis_v = vec3(0, 1, 0);
+  }
   for (const float distance : {1.0f, 100.0f, 5000.0f}) {
     const vec3 center = vec3(0.3f, -0.7f, 0.6f) * distance;
     SoupGeometry geometry{{}, false};
@@ -89,6 +95,44 @@ TEST_CASE("overlapping coplanar triangles of different shapes are all candidates
       CHECK(found.count == 400);
     }
   }
+}
+
+TEST_CASE("instances far from the origin lose no candidates to the rounding of their transforms") {
+  // Rotated, so that rays reach object space with an error that is large against their distance from the plane, and
+  // hits lie outside of the boxes of their instances. What must be found is what Embree finds in each instance alone.
+  const cpu::EmbreeDevice device;
+  std::mt19937 random(32);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  int expected_candidates = 0;
+  for (const float offset : {3000.0f, 30000.0f, 300000.0f}) {
+    for (int scene = 0; scene < 10; ++scene) {
+      Soup soup{{{SoupGeometry{{{-9, -9, 0, 9, -9, 0, 0, 9, 0}}, false}}}, {}};
+      const vec3 center = vec3(uniform(random), uniform(random), uniform(random)) * offset;
+      std::vector<BuiltSoup> alone;
+      for (int i = 0; i < 8; ++i) {
+        rhi::InstanceDesc& instance = soup.instances.emplace_back(instance_of(0));
+        const float angle = 1.5707963f + 3e-3f * uniform(random);
+        instance.object_to_world[1][1] = instance.object_to_world[2][2] = std::cos(angle);
+        instance.object_to_world[1][2] = -std::sin(angle);
+        instance.object_to_world[2][1] = std::sin(angle);
+        for (int axis = 0; axis < 3; ++axis) instance.object_to_world[axis][3] = center[axis];
+        alone.push_back(build(device, {soup.bottom_levels, {instance}}));
+      }
+      const BuiltSoup built = build(device, soup);
+      for (int i = 0; i < 50; ++i) {
+        const float distance = offset * 1e-6f * (3 + uniform(random));
+        const vec3 origin = center + vec3(0.5f * uniform(random), distance, 0.5f * uniform(random));
+        const vec3 direction(0.1f * uniform(random), -1, 0.1f);
+        int expected = 0;
+        for (const BuiltSoup& one : alone) expected += enumerate(one.top_level.view(), origin, direction).count;
+        const Enumeration found = enumerate(built.top_level.view(), origin, direction);
+        CHECK(found.count == expected);
+        CHECK(found.ids.size() == static_cast<std::size_t>(expected));
+        expected_candidates += expected;
+      }
+    }
+  }
+  CHECK(expected_candidates > 8 * 50 * 30 / 2);
 }
 
 TEST_CASE("a closed mesh is hit through its edges and vertices too") {
