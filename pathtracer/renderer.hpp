@@ -21,8 +21,10 @@ struct RenderSettings {
   std::uint32_t height = 512;
   std::uint32_t max_depth = 8;  ///< path segments from the camera on: 1 sees emission only, 2 adds direct light
   std::uint32_t seed = 0;
-  std::optional<Camera> camera;         ///< absent: automatic_camera, or the one in use when restarting
-  std::optional<glm::vec3> background;  ///< radiance of rays that leave the scene; absent: 0, or 1 when nothing emits
+  /// Absent: automatic_camera, or the one in use when restarting.
+  std::optional<Camera> camera = {};
+  /// Radiance of rays that leave the scene. Absent: 0, or 1 when nothing emits.
+  std::optional<glm::vec3> background = {};
 
   /// Seconds that one submission should take at most; it may take several times as long where the scene is uneven.
   double submission_seconds = 0.25;
