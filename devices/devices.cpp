@@ -7,9 +7,7 @@
 
 #include "rhi_cpu/device.hpp"
 #include "rhi_vulkan/device.hpp"
-#if __has_include("shaders/kernels.hpp")
 #include "shaders/kernels.hpp"
-#endif
 
 namespace tandem {
 
@@ -22,12 +20,8 @@ std::vector<rhi::DeviceInfo> enumerate_devices(const rhi::MessageCallback& on_me
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   const std::string_view name = desc.name;
   if (name == "cpu") {
-#if __has_include("shaders/kernels.hpp")
     const std::span<const cpu::PrecompiledKernel> kernels = shaders::kernels();
     return cpu::create_device(desc, {kernels.begin(), kernels.end()});
-#else
-    return cpu::create_device(desc, {});
-#endif
   }
   if (name == "vulkan" || name.starts_with("vulkan:")) return vulkan::create_device(desc);
   std::vector<std::string> names;

@@ -1,0 +1,51 @@
+#include "devices/devices.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <set>
+
+#include "shaders/spirv.hpp"
+
+namespace tandem {
+
+TEST_CASE("Every device that is listed has a name of its own and can be created by it; the CPU comes first") {
+  const std::vector<rhi::DeviceInfo> devices = enumerate_devices();
+  REQUIRE_FALSE(devices.empty());
+  CHECK(devices.front().name == "cpu");
+  std::set<std::string> names;
+  for (const rhi::DeviceInfo& device : devices) {
+    CHECK(names.insert(device.name).second);
+    CHECK(create_device({.name = device.name})->info().name == device.name);
+  }
+}
+
+TEST_CASE("A name that no device has is an error that names those there are") {
+  for (const char* name : {"", "gpu", "CPU", "cpu:0", "vulkan:", "vulkan:x", "vulkan:-1", "vulkan:1000"}) {
+    CAPTURE(name);
+    try {
+      create_device({.name = name});
+      FAIL_CHECK("a device was created");
+    } catch (const rhi::Error& error) {
+      CHECK(error.code() == rhi::ErrorCode::no_such_device);
+      CHECK_FALSE(std::string(error.what()).empty());
+    }
+  }
+  try {
+    create_device({.name = "gpu"});
+  } catch (const rhi::Error& error) {
+    CHECK(std::string(error.what()).find("cpu") != std::string::npos);
+  }
+}
+
+TEST_CASE("The shaders that ship run on the CPU without a compiler") {
+  ::setenv("TANDEM_CXX", "/nonexistent", 1);
+  const rhi::DeviceHandle device = create_device({.name = "cpu"});
+  CHECK_NOTHROW(device->create_compute_pipeline(
+      {.shader = device->create_shader_module({.spirv = shaders::path_trace(), .label = "path_trace.comp"}),
+       .specialization = {},
+       .label = "path_trace"}));
+  ::unsetenv("TANDEM_CXX");
+}
+
+}  // namespace tandem
