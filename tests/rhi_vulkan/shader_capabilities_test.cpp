@@ -1,0 +1,68 @@
+#include "rhi_vulkan/shader_capabilities.hpp"
+
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "glsl/compile.hpp"
+#include "tests/rhi/dispatch.hpp"
+
+using namespace tandem;
+
+namespace {
+
+std::vector<std::uint32_t> compile(const std::string& extension, const std::string& body) {
+  return glsl::compile("#version 460\n" + extension +
+                           "\nlayout(local_size_x = 1) in;\n"
+                           "layout(set = 0, binding = 0) buffer Values { uint values[]; };\n" +
+                           body,
+                       rhi::ShaderStage::compute, "shader");
+}
+
+/// A device with no features, as data-centre GPUs have none for ray queries.
+vulkan::PhysicalDevice bare_device() {
+  vulkan::PhysicalDevice device;
+  device.info.name = "vulkan:7";
+  return device;
+}
+
+}  // namespace
+
+TEST_CASE("a shader that needs nothing special passes on a device without features") {
+  vulkan::check_shader_capabilities(compile("", "void main() { values[0] = 1; }"), bare_device(), "plain");
+}
+
+TEST_CASE("a ray query on a device without them is an error that names the capability and the device") {
+  const std::vector<std::uint32_t> spirv =
+      compile("#extension GL_EXT_ray_query : require",
+              "layout(set = 0, binding = 1) uniform accelerationStructureEXT scene;\n"
+              "void main() { rayQueryEXT q; rayQueryInitializeEXT(q, scene, 0, 255, vec3(0), 0, vec3(1), 1);\n"
+              "rayQueryProceedEXT(q); values[0] = rayQueryGetIntersectionTypeEXT(q, true); }");
+  vulkan::PhysicalDevice device = bare_device();
+  CHECK_ERROR(unsupported, "RayQueryKHR, which device 'vulkan:7'",
+              vulkan::check_shader_capabilities(spirv, device, "rays"));
+  device.features.ray_query = true;
+  vulkan::check_shader_capabilities(spirv, device, "rays");
+}
+
+TEST_CASE("64-bit types need their features") {
+  const std::vector<std::uint32_t> spirv = compile("", "void main() { values[0] = uint(double(values[1]) * 1.5lf); }");
+  vulkan::PhysicalDevice device = bare_device();
+  CHECK_ERROR(unsupported, "doubles: the shader needs the SPIR-V capability Float64",
+              vulkan::check_shader_capabilities(spirv, device, "doubles"));
+  device.features.core.shaderFloat64 = VK_TRUE;
+  vulkan::check_shader_capabilities(spirv, device, "doubles");
+}
+
+TEST_CASE("SPIR-V newer than Vulkan 1.2 takes is refused") {
+  std::vector<std::uint32_t> spirv = compile("", "void main() { values[0] = 1; }");
+  spirv[1] = 0x00010600;
+  CHECK_ERROR(unsupported, "newer: the shader is SPIR-V 1.6",
+              vulkan::check_shader_capabilities(spirv, bare_device(), "newer"));
+}
+
+TEST_CASE("a capability that nobody knows is refused by number") {
+  std::vector<std::uint32_t> spirv = compile("", "void main() { values[0] = 1; }");
+  spirv[6] = 60000;  // the operand of the first OpCapability
+  CHECK_ERROR(unsupported, "60000", vulkan::check_shader_capabilities(spirv, bare_device(), "odd"));
+}
