@@ -71,9 +71,10 @@ Kd 0.3 0.6 0.35
 constexpr std::uint64_t sphere_materials = 4;
 
 constexpr std::uint64_t grid = 3;  ///< spheres along each axis
-constexpr glm::dvec3 room_size{549.6, 548.8, 559.2};
-constexpr double radius = 74;
-/// Largest relative displacement: 74 * 1.18 stays inside a cell of the grid (183 / 2) and off the walls.
+/// The grid ends well below the ceiling: a sphere close to the lamp would leave the room dark.
+constexpr glm::dvec3 grid_size{549.6, 420, 559.2};
+constexpr double radius = 58;
+/// Largest relative displacement: 58 * 1.18 stays inside a cell of the grid (420 / 3 / 2).
 constexpr double displacement = 0.18;
 
 /// A well-mixed number in [0, 1) (the finaliser of MurmurHash3).
@@ -176,7 +177,7 @@ void write(std::ofstream& file, const AtomicFile& target, std::string_view text)
 }
 
 glm::dvec3 sphere_centre(std::uint64_t sphere) {
-  const glm::dvec3 cell = room_size / double(grid);
+  const glm::dvec3 cell = grid_size / double(grid);
   const glm::dvec3 place(double(sphere % grid), double(sphere / (grid * grid)), double(sphere / grid % grid));
   return cell * (place + 0.5);
 }

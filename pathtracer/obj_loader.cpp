@@ -21,6 +21,8 @@ namespace tandem::pathtracer {
 namespace {
 
 constexpr std::uint32_t no_normal = std::numeric_limits<std::uint32_t>::max();
+/// Of a triangle before the first usemtl, until the end of the file.
+constexpr std::uint32_t no_material = triangle_smooth - 1;
 constexpr glm::vec3 grey{0.5f};
 
 /// A triangle whose positions and normals are still numbered as in the file, from 0.
@@ -39,7 +41,7 @@ struct Reading {
   std::vector<glm::vec3> normals;
   std::vector<FileTriangle> triangles;
   std::map<std::string, std::uint32_t, std::less<>> material_names;
-  std::optional<std::uint32_t> current_material;
+  std::uint32_t current_material = no_material;
   std::optional<std::uint32_t> default_material;
   std::set<std::string> libraries;
   std::set<std::string> unknown_materials;
@@ -89,7 +91,7 @@ void use_material(Reading& reading, std::string_view name) {
     return;
   }
   reading.unknown_materials.emplace(name);
-  reading.current_material.reset();
+  reading.current_material = default_material(reading);
 }
 
 void check_position(const Reading& reading, const Statement& statement) {
@@ -155,10 +157,9 @@ void add_face(Reading& reading, std::span<const tinyobj::index_t> corners) {
         corner.normal_index == 0 ? no_normal : resolve(reading, corner.normal_index, reading.normals.size(), "normal"));
     polygon.push_back(reading.positions[positions.back()]);
   }
-  const std::uint32_t material = reading.current_material ? *reading.current_material : default_material(reading);
   for (const auto& [a, b, c] : triangulate(polygon))
     reading.triangles.push_back(
-        {{positions[a], positions[b], positions[c]}, {normals[a], normals[b], normals[c]}, material});
+        {{positions[a], positions[b], positions[c]}, {normals[a], normals[b], normals[c]}, reading.current_material});
 }
 
 void parse(Reading& reading) {
@@ -175,6 +176,14 @@ void parse(Reading& reading) {
   std::string warning, error;
   tinyobj::LoadObjWithCallback(reading.text->stream(), callbacks, &reading, nullptr, &warning, &error);
   if (!error.empty()) throw Error(fmt::format("{}: {}", reading.text->path().string(), error));
+}
+
+/// Triangles before the first usemtl have the material of a library that defines just one, as some exporters mean it;
+/// else the grey one.
+void assign_materials(Reading& reading) {
+  const bool only_one = reading.material_names.size() == 1 && !reading.default_material;
+  for (FileTriangle& triangle : reading.triangles)
+    if (triangle.material == no_material) triangle.material = only_one ? 0 : default_material(reading);
 }
 
 /// Makes unit vectors of the normals; those that have no direction become zero. Returns how many.
@@ -249,7 +258,7 @@ Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
     warn(fmt::format("unknown materials are grey: {}", fmt::join(reading.unknown_materials, ", ")));
   if (!reading.ignored.empty())
     warn(fmt::format("only faces are read, not the elements {}", fmt::join(reading.ignored, ", ")));
-  if (reading.scene.materials.empty()) default_material(reading);
+  assign_materials(reading);
   assemble(reading);
   return std::move(reading.scene);
 }

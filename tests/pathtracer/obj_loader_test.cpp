@@ -126,6 +126,13 @@ TEST_CASE("Without a material a face is grey") {
   CHECK(scene.warnings.empty());
 }
 
+TEST_CASE("Without usemtl the only material of the library counts, but not one of several") {
+  const std::string text = "mtllib test.mtl\n" + square + "f 1 2 3\n";
+  CHECK(load(text, "newmtl a\nKd 1 0 0\n").materials[0].base_color == glm::vec3(1, 0, 0));
+  const Scene several = load(text, "newmtl a\nKd 1 0 0\nnewmtl b\nKd 0 1 0\n");
+  CHECK(several.materials[material_index(several.triangles[0])].base_color == glm::vec3(0.5f));
+}
+
 TEST_CASE("A missing MTL file is an error, unless it is allowed") {
   const std::string text = "mtllib absent.mtl\n" + square + "usemtl a\nf 1 2 3\n";
   CHECK(contains(error_of(text), "absent.mtl' does not exist"));
