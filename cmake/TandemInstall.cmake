@@ -9,10 +9,8 @@ set(TANDEM_INSTALL_DATA "${CMAKE_INSTALL_DATADIR}/tandem")
 
 # The program links Tandem's libraries statically; the path is for shared builds of what a user puts beside it.
 file(RELATIVE_PATH tandem_binaries_to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
-if(TARGET tandem)
-  set_target_properties(tandem PROPERTIES INSTALL_RPATH "$ORIGIN/${tandem_binaries_to_libraries}")
-  install(TARGETS tandem RUNTIME)
-endif()
+set_target_properties(tandem PROPERTIES INSTALL_RPATH "$ORIGIN/${tandem_binaries_to_libraries}")
+install(TARGETS tandem RUNTIME)
 
 # Every library of the project, except those that only its tests use.
 get_property(tandem_libraries GLOBAL PROPERTY TANDEM_LIBRARIES)
