@@ -48,6 +48,56 @@ bool has_specialization(std::span<const std::uint32_t> spirv) {
   return found;
 }
 
+template <typename RegisterPasses>
+std::vector<std::uint32_t> optimize(std::span<const std::uint32_t> spirv, const std::string& label,
+                                    const RegisterPasses& register_passes) {
+  spvtools::Optimizer optimizer(SPV_ENV_UNIVERSAL_1_6);
+  std::string first_message;
+  optimizer.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
+    if (first_message.empty()) first_message = message;
+  });
+  register_passes(optimizer);
+  spvtools::OptimizerOptions options;
+  options.set_run_validator(false);
+  std::vector<std::uint32_t> result;
+  if (!optimizer.Run(spirv.data(), spirv.size(), &result, options))
+    fail(label, "the specialisation constants cannot be applied: " + first_message);
+  return result;
+}
+
+/// Replaces each OpSpecConstantOp that only picks a constant (Select by a scalar condition, CompositeExtract of a
+/// constant composite), which SPIRV-Tools folds for integers alone, by a copy of the constant that it picks. Returns
+/// whether there was one.
+bool pick_constants(std::vector<std::uint32_t>& spirv) {
+  std::vector<std::uint32_t> result(spirv.begin(), spirv.begin() + header_words);
+  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> constants;  // declarations by result id
+  bool changed = false;
+  for_each_instruction(std::span<const std::uint32_t>(spirv), [&](std::span<const std::uint32_t> i) {
+    std::vector<std::uint32_t> instruction(i.begin(), i.end());
+    if (operation(i) == spv::OpSpecConstantOp) {
+      std::uint32_t picked = 0;
+      const auto declaration = constants.find(i[4]);
+      if (declaration != constants.end()) {
+        const std::vector<std::uint32_t>& operand = declaration->second;
+        if (i[3] == spv::OpSelect && operation(operand) == spv::OpConstantTrue) picked = i[5];
+        if (i[3] == spv::OpSelect && operation(operand) == spv::OpConstantFalse) picked = i[6];
+        if (i[3] == spv::OpCompositeExtract && operation(operand) == spv::OpConstantComposite && i.size() == 6)
+          picked = operand[3 + i[5]];
+      }
+      if (const auto constant = constants.find(picked); constant != constants.end()) {
+        instruction = constant->second;
+        instruction[2] = i[2];
+        changed = true;
+      }
+    }
+    if (const spv::Op op = operation(instruction); op >= spv::OpConstantTrue && op <= spv::OpConstantNull)
+      constants[instruction[2]] = instruction;
+    result.insert(result.end(), instruction.begin(), instruction.end());
+  });
+  if (changed) spirv = std::move(result);
+  return changed;
+}
+
 std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, const std::string& label,
                                       std::span<const rhi::SpecializationValue> values) {
   std::unordered_set<std::uint32_t> declared;
@@ -62,29 +112,25 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, cons
   }
   if (!has_specialization(spirv)) return {spirv.begin(), spirv.end()};
 
-  spvtools::Optimizer optimizer(SPV_ENV_UNIVERSAL_1_6);
-  std::string first_message;
-  optimizer.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
-    if (first_message.empty()) first_message = message;
+  std::vector<std::uint32_t> result = optimize(spirv, label, [&](spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(words));
+    optimizer.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass());
+    optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
   });
-  optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(words));
-  optimizer.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass());
-  optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
-  spvtools::OptimizerOptions options;
-  options.set_run_validator(false);
-  std::vector<std::uint32_t> result;
-  if (!optimizer.Run(spirv.data(), spirv.size(), &result, options))
-    fail(label, "the specialisation constants cannot be applied: " + first_message);
+  // What one side folds may let the other fold more.
+  while (pick_constants(result))
+    result = optimize(result, label, [](spvtools::Optimizer& optimizer) {
+      optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
+    });
   return result;
 }
 
 /// Folding leaves what it cannot compute.
 void check_folded(std::span<const std::uint32_t> spirv, const std::string& label) {
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    if (operation(i) != spv::OpSpecConstantOp) return;
-    const std::uint32_t inner[] = {1u << 16 | (i[3] & 0xffff)};
-    throw rhi::Error(rhi::ErrorCode::unsupported, label,
-                     "OpSpecConstantOp with " + instruction_name(inner) + " is not supported by the CPU device");
+    if (operation(i) == spv::OpSpecConstantOp)
+      throw rhi::Error(rhi::ErrorCode::unsupported, label,
+                       "OpSpecConstantOp with " + folded_operation_name(i) + " is not supported by the CPU device");
   });
 }
 

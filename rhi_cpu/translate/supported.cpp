@@ -157,6 +157,14 @@ std::string literal_string(std::span<const std::uint32_t> words) {
   return {characters, strnlen(characters, words.size_bytes())};
 }
 
+/// The name of an instruction as the disassembler prints it, for example "OpImageWrite".
+std::string instruction_name(std::span<const std::uint32_t> instruction) {
+  std::istringstream text(disassemble(instruction));
+  for (std::string word; text >> word;)
+    if (word.starts_with("Op")) return word;
+  return fmt::format("SPIR-V opcode {}", instruction[0] & 0xffff);
+}
+
 class Checker {
  public:
   explicit Checker(const std::string& label) : label_(label) {}
@@ -269,11 +277,13 @@ class Checker {
 
 }  // namespace
 
-std::string instruction_name(std::span<const std::uint32_t> instruction) {
+std::string folded_operation_name(std::span<const std::uint32_t> instruction) {
   std::istringstream text(disassemble(instruction));
-  for (std::string word; text >> word;)
-    if (word.starts_with("Op")) return word;
-  return fmt::format("SPIR-V opcode {}", instruction[0] & 0xffff);
+  std::string word;
+  while (text >> word && word != "OpSpecConstantOp") {
+  }
+  text >> word >> word;  // the type, then the operation
+  return word;
 }
 
 void check_supported(std::span<const std::uint32_t> spirv, const std::string& label) {

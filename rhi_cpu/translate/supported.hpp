@@ -11,7 +11,7 @@ namespace tandem::cpu {
 /// instruction or extended instruction. Nothing unknown gets past it. The words must be a valid module.
 void check_supported(std::span<const std::uint32_t> spirv, const std::string& label);
 
-/// The name of one instruction as the SPIR-V disassembler prints it, for example "OpImageWrite".
-std::string instruction_name(std::span<const std::uint32_t> instruction);
+/// The operation that an OpSpecConstantOp applies, for example "IAdd".
+std::string folded_operation_name(std::span<const std::uint32_t> instruction);
 
 }  // namespace tandem::cpu

@@ -1,0 +1,135 @@
+// Everything that the translator does not handle is named.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+#include <spirv-tools/libspirv.hpp>
+
+#include "rhi/error.hpp"
+#include "rhi_cpu/translate/translate.hpp"
+#include "tests/rhi_cpu/translate/kernel_harness.hpp"
+
+namespace {
+
+using tandem::rhi::Error;
+using tandem::rhi::ErrorCode;
+
+std::vector<std::uint32_t> assemble(const std::string& text) {
+  const spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_6);
+  std::vector<std::uint32_t> words;
+  REQUIRE(tools.Assemble(text, &words, SPV_TEXT_TO_BINARY_OPTION_PRESERVE_NUMERIC_IDS));
+  return words;
+}
+
+void check_refused(const std::vector<std::uint32_t>& spirv, ErrorCode code, const std::string& what) {
+  CAPTURE(what);
+  try {
+    tandem::cpu::translate(spirv, "a label");
+    FAIL_CHECK("translated");
+  } catch (const Error& error) {
+    CAPTURE(std::string(error.what()));
+    CHECK(error.code() == code);
+    CHECK(std::string(error.what()).find("a label: ") == 0);
+    CHECK(std::string(error.what()).find(what) != std::string::npos);
+  }
+}
+
+void check_glsl(const std::string& glsl, const std::string& what) {
+  check_refused(tandem::test::compute_spirv("layout(local_size_x = 4) in;\n" + glsl), ErrorCode::unsupported, what);
+}
+
+/// A module that does nothing, with more in its preamble, its decorations, its globals and its body.
+std::string module(const std::string& capability, const std::string& decorations, const std::string& globals,
+                   const std::string& body, const std::string& model = "GLCompute") {
+  return "OpCapability Shader\n" + capability +
+         "%glsl = OpExtInstImport \"GLSL.std.450\"\nOpMemoryModel Logical GLSL450\n" + "OpEntryPoint " + model +
+         " %main \"main\"\n" + (model == "GLCompute" ? "OpExecutionMode %main LocalSize 1 1 1\n" : "") + decorations +
+         "%void = OpTypeVoid\n%signature = OpTypeFunction %void\n%float = OpTypeFloat 32\n%one = OpConstant %float "
+         "1\n" +
+         globals + "%main = OpFunction %void None %signature\n%entry = OpLabel\n" + body + "OpReturn\nOpFunctionEnd\n";
+}
+
+TEST_CASE("the empty module is supported") { tandem::cpu::translate(assemble(module("", "", "", "")), "empty"); }
+
+TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
+  check_glsl("layout(binding = 0, rgba8) uniform image2D i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
+             "OpTypeImage is not supported");
+  check_glsl(
+      "layout(binding = 0) uniform sampler2D s; layout(binding = 1) buffer B { vec4 b; };\n"
+      "void main() { b = textureLod(s, vec2(0), 0.0); }",
+      "OpTypeImage is not supported");
+  check_glsl("shared int s[4]; void main() { s[gl_LocalInvocationIndex] = 1; }",
+             "storage class Workgroup is not supported");
+  check_glsl("void main() { barrier(); }", "OpControlBarrier is not supported");
+  check_glsl(
+      "#extension GL_KHR_shader_subgroup_basic : require\nlayout(binding = 1) buffer B { uint b; };\n"
+      "void main() { b = gl_SubgroupSize; }",
+      "capability GroupNonUniform is not supported");
+  check_glsl(
+      "#extension GL_EXT_buffer_reference : require\nlayout(buffer_reference, std430) buffer P { int i; };\n"
+      "layout(push_constant) uniform Push { P p; }; void main() { p.i = 1; }",
+      "capability PhysicalStorageBufferAddresses is not supported");
+  check_glsl(
+      "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require\nlayout(binding = 1) buffer B { float b; "
+      "};\n"
+      "void main() { b = float(float16_t(b) * float16_t(2)); }",
+      "capability Float16 is not supported");
+  const std::string ray_query =
+      "#extension GL_EXT_ray_query : require\nlayout(binding = 0) uniform accelerationStructureEXT a;\n"
+      "layout(binding = 1) buffer B { bool opaque_aabb; } b; void main() { rayQueryEXT q;\n"
+      "rayQueryInitializeEXT(q, a, 0, 255, vec3(0), 0.0, vec3(1), 1.0); rayQueryProceedEXT(q); ";
+  check_glsl(ray_query + "rayQueryGenerateIntersectionEXT(q, 0.5); }",
+             "OpRayQueryGenerateIntersectionKHR is not supported");
+  check_glsl(ray_query + "if (rayQueryGetIntersectionCandidateAABBOpaqueEXT(q)) rayQueryTerminateEXT(q); }",
+             "OpRayQueryGetIntersectionCandidateAABBOpaqueKHR is not supported");
+}
+
+TEST_CASE("capabilities, models, modes, storage classes, decorations and built-ins are named") {
+  check_refused(assemble(module("OpCapability Geometry\n", "", "", "")), ErrorCode::unsupported,
+                "capability Geometry is");
+  check_refused(assemble(module("OpCapability Linkage\n", "", "", "")), ErrorCode::unsupported,
+                "capability Linkage is");
+  check_refused(assemble(module("", "", "", "", "Vertex")), ErrorCode::unsupported, "execution model Vertex is");
+  check_refused(assemble(module("", "OpExecutionMode %main DepthReplacing\n", "", "")), ErrorCode::unsupported,
+                "execution mode DepthReplacing is");
+  check_refused(assemble(module("", "", "%p = OpTypePointer Output %float\n", "")), ErrorCode::unsupported,
+                "storage class Output is");
+  check_refused(assemble(module("", "OpDecorate %one Flat\n", "", "")), ErrorCode::unsupported, "decoration Flat is");
+  check_refused(assemble(module("", "OpDecorate %one Location 3\n", "", "")), ErrorCode::unsupported,
+                "decoration Location is");
+  check_refused(assemble(module("", "OpDecorate %one BuiltIn FragCoord\n", "", "")), ErrorCode::unsupported,
+                "built-in FragCoord is");
+}
+
+TEST_CASE("instructions and extended instructions are named") {
+  check_refused(assemble(module("", "", "", "%d = OpDPdx %float %one\n")), ErrorCode::unsupported, "OpDPdx is");
+  check_refused(assemble(module("", "", "", "%i = OpExtInst %float %glsl InterpolateAtCentroid %one\n")),
+                ErrorCode::unsupported, "extended instruction InterpolateAtCentroid");
+  std::string other = module("", "", "", "");
+  other.replace(other.find("GLSL.std.450"), 12, "OpenCL.std");
+  check_refused(assemble(other), ErrorCode::unsupported, "extended instruction set OpenCL.std is");
+}
+
+TEST_CASE("words that are no module") {
+  check_refused({}, ErrorCode::invalid_argument, "not SPIR-V");
+  check_refused({1, 2, 3, 4, 5, 6}, ErrorCode::invalid_argument, "not SPIR-V");
+  std::vector<std::uint32_t> words = assemble(module("", "", "", ""));
+  words.resize(words.size() - 1);
+  check_refused(words, ErrorCode::invalid_argument, "not valid");
+  words.back() = 0x00400000u | (words.back() & 0xffff);
+  check_refused(words, ErrorCode::invalid_argument, "truncated");
+  check_refused(assemble(module("", "", "", "%x = OpFAdd %float %one %void\n")), ErrorCode::invalid_argument,
+                "not valid");
+}
+
+TEST_CASE("cutting a module short at any word is an error, never a crash") {
+  const std::vector<std::uint32_t> words = tandem::test::compute_spirv(
+      "layout(local_size_x = 1) in; layout(binding = 0) buffer B { float b[]; };\n"
+      "void main() { for (int i = 0; i < b.length(); ++i) b[i] = sqrt(b[i]); }");
+  for (std::size_t length = 0; length < words.size(); ++length)
+    CHECK_THROWS_AS(tandem::cpu::translate({words.data(), length}, "cut"), Error);
+}
+
+}  // namespace
