@@ -39,6 +39,14 @@ AtomicFile::~AtomicFile() {
   if (!committed_) std::filesystem::remove(temporary_path_, ignored);
 }
 
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  errno = 0;
+  std::ofstream stream(temporary_path_, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  stream.close();  // what fails only here, when the last of it reaches the disk, must be seen too
+  if (!stream) throw Error(fmt::format("cannot write '{}': {}", path_.string(), std::strerror(errno)));
+}
+
 void AtomicFile::commit() {
   std::error_code error;
   std::filesystem::rename(temporary_path_, path_, error);

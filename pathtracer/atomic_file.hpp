@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 
 namespace tandem::pathtracer {
 
@@ -16,6 +18,10 @@ class AtomicFile {
 
   /// Where to write. It has the extension of the final name.
   const std::filesystem::path& temporary_path() const noexcept { return temporary_path_; }
+
+  /// Makes `bytes` all that the temporary file holds. Throws Error, with the system's reason, unless it took every
+  /// byte.
+  void write(std::span<const std::byte> bytes);
 
   /// Gives the file its name, replacing an older one. Throws Error.
   void commit();

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "pathtracer/atomic_file.hpp"
@@ -51,7 +53,10 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
                        format == Format::exr ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", format == Format::exr ? "Linear" : "sRGB");
   for (const auto& [key, value] : metadata) spec.attribute(std::string(metadata_prefix) + key, value);
-  if (!output->open(target.temporary_path().string(), spec)) throw fail(output->geterror());
+  // Into memory first: OpenImageIO's own files do not say when a full disk took only half of one.
+  std::vector<unsigned char> file;
+  OIIO::Filesystem::IOVecOutput memory(file);
+  if (!output->set_ioproxy(&memory) || !output->open(path.filename().string(), spec)) throw fail(output->geterror());
   bool written = false;
   if (format == Format::exr) {
     written = output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data());
@@ -63,6 +68,7 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
     written = output->write_image(OIIO::TypeDesc::UINT8, encoded.data());
   }
   if (!written || !output->close()) throw fail(output->geterror());
+  target.write(std::as_bytes(std::span(file)));
   target.commit();
 }
 

@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <fstream>
 #include <system_error>
 
 #include "pathtracer/atomic_file.hpp"
@@ -44,15 +43,13 @@ OutputFolder::~OutputFolder() {
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
   pathtracer::AtomicFile file(path);
-  std::ofstream stream(file.temporary_path(), std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw pathtracer::Error(fmt::format("'{}' cannot be written", path.string()));
+  file.write(std::as_bytes(std::span(text)));
   file.commit();
 }
 
 void write_or_rescue(std::span<const OutputFile> files) {
   std::filesystem::path rescue;
+  std::error_code not_empty;
   std::string first_reason;
   std::string first_loss;
   for (const OutputFile& file : files) {
@@ -69,6 +66,7 @@ void write_or_rescue(std::span<const OutputFile> files) {
       if (first_loss.empty()) first_loss = error.what();
     }
   }
+  if (!rescue.empty()) std::filesystem::remove(rescue, not_empty);
   if (!first_loss.empty())
     throw pathtracer::Error(fmt::format("{}; nor could it be saved elsewhere: {}", first_reason, first_loss));
   if (!first_reason.empty()) {
