@@ -120,6 +120,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   bool print_bits(spv::Op op, Operands ops);
   bool print_matrix(spv::Op op, Operands ops);
   void print_extended_result(Operands ops, const std::string& low, const std::string& high);
+
+  // printer_instructions.cpp: which instruction goes where; ray queries.
   void print_ray_query(spv::Op op, Operands ops);
 
   // printer_extended.cpp: GLSL.std.450.
