@@ -11,7 +11,7 @@ namespace tandem::cpu {
 /// Host memory, aligned to a cache line.
 class Buffer final : public rhi::Buffer {
  public:
-  /// Throws Error(out_of_memory).
+  /// Throws Error(out_of_memory), always for more than the machine has.
   Buffer(DeviceStateHandle device, const rhi::BufferDesc& desc);
 
   std::uint64_t device_address() const override;
