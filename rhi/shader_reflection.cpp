@@ -139,6 +139,7 @@ class Reflector {
     const spirv_cross::SpecializationConstant* specialized[3] = {&x, &y, &z};
     for (std::uint32_t i = 0; i < 3; ++i) {
       const auto id = static_cast<std::uint32_t>(specialized[i]->id);
+      if (id != 0) result_.workgroup_size_constant[i] = specialized[i]->constant_id;
       result_.workgroup_size[i] =
           id != 0 ? constant_value(id) : compiler_.get_execution_mode_argument(spv::ExecutionModeLocalSize, i);
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -42,7 +43,9 @@ struct ShaderReflection {
   ShaderStage stage = ShaderStage::compute;
   std::string entry_point;
   std::array<std::uint32_t, 3> workgroup_size = {1, 1, 1};  ///< before specialisation; compute only
-  std::uint32_t push_constant_size = 0;                     ///< bytes, 0 without a push constant block
+  /// The SpecId that sets a dimension of the workgroup size, where one does.
+  std::array<std::optional<std::uint32_t>, 3> workgroup_size_constant;
+  std::uint32_t push_constant_size = 0;  ///< bytes, 0 without a push constant block
   std::vector<ShaderBinding> bindings;
   std::vector<SpecializationConstant> specialization_constants;
 };

@@ -128,6 +128,23 @@ bool same_layout(const ShaderReflection& a, const ShaderReflection& b, std::uint
                     });
 }
 
+void check_workgroup_size(const ComputePipelineDesc& desc, const Limits& limits) {
+  const ShaderReflection& reflection = desc.shader->reflection();
+  std::uint64_t invocations = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::uint32_t size = reflection.workgroup_size[i];
+    for (const SpecializationValue& given : desc.specialization)
+      if (reflection.workgroup_size_constant[i] == given.id) size = given.value;
+    require(size > 0 && size <= limits.max_workgroup_size[i], desc.label,
+            "a workgroup size of " + to_string(size) + " in dimension " + to_string(i) +
+                ", where the device allows 1 to " + to_string(limits.max_workgroup_size[i]));
+    invocations *= size;
+  }
+  require(invocations <= limits.max_workgroup_invocations, desc.label,
+          to_string(invocations) + " invocations in a workgroup are more than the device's " +
+              to_string(limits.max_workgroup_invocations));
+}
+
 }  // namespace
 
 void check(const BufferDesc& desc) { require(desc.size > 0, desc.label, "a buffer must have at least one byte"); }
@@ -181,6 +198,7 @@ void check(const ComputePipelineDesc& desc, const DeviceInfo& device) {
       require(desc.specialization[j].id != id, desc.label,
               "specialisation constant " + to_string(id) + " is given twice");
   }
+  check_workgroup_size(desc, device.limits);
   for (const ShaderBinding& binding : reflection.bindings) {
     require(binding.set < device.limits.max_bind_groups, desc.label,
             "the shader uses descriptor set " + to_string(binding.set) + ", but the device has " +

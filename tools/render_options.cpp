@@ -16,6 +16,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("SCENE", options.scene, "Wavefront OBJ file with its MTL files beside it")
       ->required()
       ->type_name("FILE.obj");
+  command.add_flag("--allow-missing-mtl", options.allow_missing_mtl,
+                   "Go on with grey materials, and a warning, where an MTL file is not there");
   const auto group = [&](const char* name) { return command.add_option_group(name); };
 
   CLI::App& image = *group("Image");

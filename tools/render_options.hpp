@@ -22,6 +22,7 @@ struct RenderOptions {
   std::optional<glm::vec3> background;  ///< radiance
   std::uint32_t threads = 0;            ///< of the CPU device; 0: all
   bool validation = false;              ///< Vulkan validation layers
+  bool allow_missing_mtl = false;       ///< a missing MTL file is a warning
 };
 
 /// Declares SCENE and the options on the command. `options` must outlive the parsing.

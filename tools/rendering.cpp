@@ -9,7 +9,7 @@
 namespace tandem::tools {
 
 pathtracer::Scene load_scene(const RenderOptions& options) {
-  pathtracer::Scene scene = pathtracer::load_obj(options.scene);
+  pathtracer::Scene scene = pathtracer::load_obj(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
   print_warnings(scene.warnings);
   return scene;
 }

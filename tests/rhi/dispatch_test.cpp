@@ -114,6 +114,8 @@ void main() {
   CHECK(run({{3, bits(-9)}, {0, 42}, {7, 16}, {1, bits(0.25f)}, {2, 1}}) == std::vector<float>{42, 0.25f, 1, -9, 16});
   CHECK_ERROR(invalid_argument, "specialised: ", run({{5, 1}}));
   CHECK_ERROR(invalid_argument, "specialised: ", run({{0, 1}, {0, 2}}));
+  CHECK_ERROR(invalid_argument, "specialised: a workgroup size of 0", run({{7, 0}}));
+  CHECK_ERROR(invalid_argument, "specialised: a workgroup size of 1048576", run({{7, 1u << 20}}));
 }
 
 TANDEM_DEVICE_TEST("uniform and storage buffers of several sets, with offsets") {

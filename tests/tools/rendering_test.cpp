@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -73,6 +75,23 @@ TEST_CASE("the camera and background options reach the picture") {
   for (const glm::vec3& pixel : pathtracer::read_image(folder.path() / "x.exr").pixels) {
     CHECK(pixel == glm::vec3(0.25F, 0.5F, 0.75F));
   }
+}
+
+TEST_CASE("a missing MTL file is an error, unless it is allowed") {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "grey.obj") << "mtllib absent.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n";
+  const std::vector<std::string> arguments = {"render", "grey.obj", "--size", "8x8", "--spp", "1", "-o", "grey.png"};
+  const Outcome refused = run_tandem(arguments, {.folder = folder.path()});
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.errors.find("absent.mtl") != std::string::npos);
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "grey.png"));
+
+  std::vector<std::string> allowing = arguments;
+  allowing.push_back("--allow-missing-mtl");
+  const Outcome allowed = run_tandem(allowing, {.folder = folder.path()});
+  CHECK(allowed.exit_code == 0);
+  CHECK(allowed.errors.find("absent.mtl") != std::string::npos);
+  CHECK(std::filesystem::exists(folder.path() / "grey.png"));
 }
 
 TEST_CASE("diff of a device with itself agrees in every bit, and writes all that it promises") {
