@@ -13,8 +13,9 @@ namespace tandem::vulkan {
 std::vector<rhi::DeviceInfo> enumerate(const rhi::MessageCallback& on_message = {});
 
 /// @param desc.name "vulkan" for the first that qualifies, "vulkan:N" for enumerate()[N]
-/// A device that is destroyed waits for what was submitted to it. Throws rhi::Error(no_such_device) with the names
-/// there are, or why none qualifies.
+/// A device that is destroyed waits for what was submitted to it. Destroy it before main returns: when the process
+/// exits, drivers and layers take themselves apart. Throws rhi::Error(no_such_device) with the names there are, or why
+/// none qualifies.
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc);
 
 }  // namespace tandem::vulkan

@@ -92,12 +92,15 @@ TEST_CASE("driver validation speaks through on_message") {
   const rhi::DeviceHandle device = vulkan::create_device(desc);
   device->submit(device->create_command_list("fine"))->wait();
   CHECK(listener.messages->empty());
-  // A workgroup larger than any device takes passes the interface, which knows no specialised sizes.
-  const std::vector<std::uint32_t> spirv =
-      glsl::compile("#version 460\nlayout(local_size_x_id = 0) in;\nvoid main() {}", rhi::ShaderStage::compute, "huge");
+  // More shared memory than any device has, for which the interface has no rule.
+  const std::vector<std::uint32_t> spirv = glsl::compile(
+      "#version 460\nlayout(local_size_x = 1) in;\n"
+      "layout(set = 0, binding = 0) buffer Values { uint values[]; };\nshared uint huge[1 << 24];\n"
+      "void main() { huge[values[0]] = values[1]; values[2] = huge[values[3]]; }",
+      rhi::ShaderStage::compute, "huge");
   const rhi::ShaderModuleHandle shader = device->create_shader_module({.spirv = spirv, .label = "huge"});
   try {
-    device->create_compute_pipeline({.shader = shader, .specialization = {{0, 1u << 30}}, .label = "huge"});
+    device->create_compute_pipeline({.shader = shader, .specialization = {}, .label = "huge"});
   } catch (const rhi::Error&) {
     // The driver may refuse as well.
   }
