@@ -22,9 +22,13 @@ struct DeviceUnderTest {
   rhi::DeviceHandle device;
 };
 
-DeviceUnderTest& device_under_test(const std::string& name) {
+std::map<std::string, DeviceUnderTest>& devices_under_test() {
   static std::map<std::string, DeviceUnderTest> devices;
-  DeviceUnderTest& entry = devices[name];
+  return devices;
+}
+
+DeviceUnderTest& device_under_test(const std::string& name) {
+  DeviceUnderTest& entry = devices_under_test()[name];
   if (entry.device == nullptr) {
     rhi::DeviceDesc desc;
     desc.name = name;
@@ -58,6 +62,17 @@ std::vector<std::string> take_warnings(const std::string& name) {
   DeviceUnderTest::Warnings& warnings = *device_under_test(name).warnings;
   const std::lock_guard lock(warnings.mutex);
   return std::exchange(warnings.texts, {});
+}
+
+std::vector<std::string> release_devices() {
+  std::vector<std::string> warnings;
+  for (auto& [name, entry] : devices_under_test()) {
+    entry.device = nullptr;
+    const std::lock_guard lock(entry.warnings->mutex);
+    warnings.insert(warnings.end(), entry.warnings->texts.begin(), entry.warnings->texts.end());
+  }
+  devices_under_test().clear();
+  return warnings;
 }
 
 rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const std::string& glsl, const std::string& label,

@@ -19,6 +19,10 @@ rhi::DeviceHandle device(const std::string& name);
 /// empty.
 std::vector<std::string> take_warnings(const std::string& name);
 
+/// Destroys the devices and returns what was said of them meanwhile. Before main returns: drivers and layers take
+/// themselves apart when the process exits, and cannot be called any more.
+std::vector<std::string> release_devices();
+
 /// Compiles GLSL and makes a compute pipeline of it.
 rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const std::string& glsl, const std::string& label,
                                             std::vector<rhi::SpecializationValue> specialization = {});
