@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -27,9 +28,33 @@ void TestScene::add_quad(const glm::vec3& origin, const glm::vec3& u, const glm:
   triangles.push_back({.vertices = {first, first + 2, first + 3}, .material = material});
 }
 
+void TestScene::add_sphere(const glm::dvec3& centre, double radius, int subdivisions, std::uint32_t material) {
+  normals.resize(positions.size());
+  for (const glm::dvec3 sign :
+       {glm::dvec3{1, 1, 1}, {-1, 1, 1}, {1, -1, 1}, {1, 1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, -1}}) {
+    // Vertices on an edge of the octahedron are computed twice, with the same bits: the sphere is closed.
+    const auto corner = [&](int x, int y) {
+      const glm::dvec3 normal = glm::normalize(sign * glm::dvec3(x, y, subdivisions - x - y));
+      positions.emplace_back(centre + radius * normal);
+      normals.emplace_back(normal);
+      return static_cast<std::uint32_t>(positions.size() - 1);
+    };
+    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+      if (sign.x * sign.y * sign.z < 0) std::swap(b, c);
+      triangles.push_back({.vertices = {a, b, c}, .material = material});
+    };
+    for (int x = 0; x < subdivisions; ++x)
+      for (int y = 0; x + y < subdivisions; ++y) {
+        const std::uint32_t b = corner(x + 1, y), c = corner(x, y + 1);
+        add(corner(x, y), b, c);
+        if (x + y + 1 < subdivisions) add(b, corner(x + 1, y + 1), c);
+      }
+  }
+}
+
 void TestScene::add_lights() {
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-    if (materials[triangles[i].material].emission == glm::vec3(0)) continue;
+    if (materials[triangles[i].material & ~pathtracer::triangle_smooth].emission == glm::vec3(0)) continue;
     lights.push_back({.triangle = i,
                       .alias = static_cast<std::uint32_t>(lights.size()),
                       .threshold = 0xffffffffu,
@@ -71,7 +96,9 @@ GpuMaterial glass(float ior) {
 DeviceScene upload(rhi::Device& device, const TestScene& scene) {
   DeviceScene result;
   result.positions = buffer_of(device, scene.positions, "positions");
-  result.normals = buffer_of(device, scene.positions, "normals");
+  std::vector<glm::vec3> normals = scene.normals;
+  normals.resize(scene.positions.size());
+  result.normals = buffer_of(device, normals, "normals");
   result.triangles = buffer_of(device, scene.triangles, "triangles");
   result.materials = buffer_of(device, scene.materials, "materials");
   result.lights =

@@ -13,6 +13,7 @@ namespace tandem::test {
 /// A scene made by hand, and what the path tracer reads of it.
 struct TestScene {
   std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;  ///< of the positions; read for those of smooth triangles only
   std::vector<pathtracer::GpuTriangle> triangles;
   std::vector<pathtracer::GpuMaterial> materials;
   std::vector<pathtracer::GpuLight> lights;
@@ -21,6 +22,9 @@ struct TestScene {
   std::uint32_t add_material(const pathtracer::GpuMaterial& material);
   /// The parallelogram origin, origin + u, origin + u + v, origin + v; seen counter-clockwise from u x v.
   void add_quad(const glm::vec3& origin, const glm::vec3& u, const glm::vec3& v, std::uint32_t material);
+  /// An octahedron of 8 subdivisions^2 triangles with all vertices on the sphere, seen counter-clockwise from outside.
+  /// With pathtracer::triangle_smooth in the material the vertices have the sphere's normals.
+  void add_sphere(const glm::dvec3& centre, double radius, int subdivisions, std::uint32_t material);
   /// Makes every emissive triangle a light, all with equal probability.
   void add_lights();
 };
