@@ -212,6 +212,24 @@ TANDEM_DEVICE_TEST(
   CHECK(mean(other, 16) == doctest::Approx(previous).epsilon(0.05));
 }
 
+TANDEM_DEVICE_TEST("A face that a scene holds twice looks like one, whichever copy a ray meets") {
+  test::TestScene scene = room();
+  RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 64, 64, scene);
+  constants.sample_count = 4;
+  const test::Rendering once = test::path_trace(device, test::upload(device, scene), {constants});
+  for (const std::uint32_t quad : {0u, 3u, 5u, 7u}) {  // the floor, a wall, the mirror, the glass
+    scene.triangles.push_back(scene.triangles[2 * quad]);
+    scene.triangles.push_back(scene.triangles[2 * quad + 1]);
+  }
+  const test::Rendering twice = test::path_trace(device, test::upload(device, scene), {constants});
+  std::size_t different = 0;
+  for (std::size_t pixel = 0; pixel < once.ray_counts.size(); ++pixel)
+    different +=
+        !std::equal(&once.radiance_sum[3 * pixel], &once.radiance_sum[3 * pixel] + 3, &twice.radiance_sum[3 * pixel]);
+  // Another tree may take the other triangle at an edge; 100,000 rays here do so a few times at most.
+  CHECK(different <= 3);
+}
+
 TEST_CASE("All devices compute the same images to the last bit") {
   const test::TestScene scene = room();
   RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 128, 128, scene);
