@@ -184,7 +184,8 @@ glm::dvec3 sphere_centre(std::uint64_t sphere) {
 
 }  // namespace
 
-std::uint64_t generate_spheres(std::uint64_t triangle_count, const std::filesystem::path& obj_path) {
+std::uint64_t generate_spheres(std::uint64_t triangle_count, const std::filesystem::path& obj_path,
+                               const std::function<bool(double fraction)>& progress) {
   if (triangle_count < minimum_generated_triangles || triangle_count > maximum_generated_triangles)
     throw Error(fmt::format("{} triangles cannot be generated, only {} to {}", triangle_count,
                             minimum_generated_triangles, maximum_generated_triangles));
@@ -206,6 +207,7 @@ std::uint64_t generate_spheres(std::uint64_t triangle_count, const std::filesyst
   std::uint64_t written = room_triangles;
   std::uint64_t first_vertex = room_vertices + 1;
   for (std::uint32_t index = 0; index < plan.size(); ++index) {
+    if (progress && !progress(double(index) / double(plan.size()))) return 0;
     const SphereGrid sphere{plan[index]};
     const glm::dvec3 centre = sphere_centre(index);
     fmt::memory_buffer text;

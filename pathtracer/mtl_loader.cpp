@@ -33,18 +33,16 @@ std::string checked_color(const Reading& reading, const Statement& statement) {
   std::string_view rest = statement.rest;
   std::string numbers;
   int count = 0;
-  std::string_view last;
   for (std::string_view word = take_word(rest); !word.empty() && word[0] != '#' && count < 3; word = take_word(rest)) {
     double value = 0;
     if (!parse_number(word, value))
       throw reading.text->error(fmt::format("{} takes numbers, not '{}'", statement.keyword, word));
     if (!(value >= 0) || !std::isfinite(static_cast<float>(value)))
       throw reading.text->error(fmt::format("{} of {} is not finite and at least 0", statement.keyword, word));
-    numbers += fmt::format(" {}", word);
-    last = word;
+    numbers += fmt::format(" {}", static_cast<float>(value));
     ++count;
   }
-  if (count == 1) numbers += fmt::format(" {} {}", last, last);
+  if (count == 1) numbers += numbers + numbers;
   if (count != 1 && count != 3)
     throw reading.text->error(fmt::format("{} takes one or three numbers, here are {}", statement.keyword, count));
   return fmt::format("{}{}", statement.keyword, numbers);
@@ -57,7 +55,7 @@ std::string checked_ior(const Reading& reading, const Statement& statement) {
   if (!parse_number(word, value) || !(value >= 0) || !std::isfinite(static_cast<float>(value)))
     throw reading.text->error(
         fmt::format("an index of refraction (Ni) of '{}' is no finite number of at least 0", word));
-  return fmt::format("Ni {}", word);
+  return fmt::format("Ni {}", static_cast<float>(value));
 }
 
 std::string checked_illum(const Reading& reading, const Statement& statement) {

@@ -24,6 +24,8 @@ constexpr std::uint32_t no_normal = std::numeric_limits<std::uint32_t>::max();
 /// Of a triangle before the first usemtl, until the end of the file.
 constexpr std::uint32_t no_material = triangle_smooth - 1;
 constexpr glm::vec3 grey{0.5f};
+/// Where a ray meets a triangle is found from products of three coordinates, which must be floats.
+constexpr double largest_coordinate = 1e12;
 
 /// A triangle whose positions and normals are still numbered as in the file, from 0.
 struct FileTriangle {
@@ -102,6 +104,9 @@ void check_position(const Reading& reading, const Statement& statement) {
     if (word.empty()) throw reading.text->error("a vertex has fewer than three coordinates");
     if (!parse_number(word, value) || !std::isfinite(static_cast<float>(value)))
       throw reading.text->error(fmt::format("the vertex coordinate '{}' is no finite number", word));
+    if (std::abs(value) > largest_coordinate)
+      throw reading.text->error(fmt::format("the vertex coordinate '{}' is beyond {:g}, the farthest that rays reach",
+                                            word, largest_coordinate));
   }
 }
 
@@ -165,7 +170,11 @@ void add_face(Reading& reading, std::span<const tinyobj::index_t> corners) {
 void parse(Reading& reading) {
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* data, float x, float y, float z, float) {
-    static_cast<Reading*>(data)->positions.emplace_back(x, y, z);
+    Reading& reading = *static_cast<Reading*>(data);
+    // tinyobjloader loses count where a number has hundreds of digits.
+    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+      throw reading.text->error("a vertex coordinate has too many digits");
+    reading.positions.emplace_back(x, y, z);
   };
   callbacks.normal_cb = [](void* data, float x, float y, float z) {
     static_cast<Reading*>(data)->normals.emplace_back(x, y, z);

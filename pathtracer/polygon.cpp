@@ -12,6 +12,10 @@ namespace {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// How often no ear is found before the rest becomes a fan: a polygon that crosses itself has no right triangulation,
+/// and each search looks at all pairs of its corners.
+constexpr int largest_searches = 64;
+
 /// Twice the signed area, positive when counter-clockwise.
 double orientation(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
@@ -65,12 +69,15 @@ std::vector<Triangle> triangulate(std::span<const glm::vec3> corners) {
 
   std::vector<Triangle> triangles;
   triangles.reserve(corners.size() - 2);
-  while (ring.size() > 3) {
+  int searches = largest_searches;
+  while (ring.size() > 3 && searches > 0) {
     std::size_t ear = start % ring.size();
+    --searches;
     for (std::size_t tried = 0; tried < ring.size(); ++tried) {
       const std::size_t candidate = (start + tried) % ring.size();
       if (!is_ear(points, ring, candidate)) continue;
       ear = candidate;
+      ++searches;
       break;
     }
     const std::size_t count = ring.size();
@@ -78,7 +85,7 @@ std::vector<Triangle> triangulate(std::span<const glm::vec3> corners) {
     ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(ear));
     start = ear;
   }
-  triangles.push_back({ring[0], ring[1], ring[2]});
+  for (std::size_t i = 2; i < ring.size(); ++i) triangles.push_back({ring[0], ring[i - 1], ring[i]});
   return triangles;
 }
 

@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +11,7 @@ namespace tandem::pathtracer {
 namespace {
 
 constexpr std::string_view blanks = " \t\r";
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";  ///< with which some editors begin UTF-8 files
 
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(blanks);
@@ -29,12 +29,18 @@ std::string read_text(const std::filesystem::path& path) {
     throw Error(
         fmt::format("cannot read '{}': {}", path.string(), exists ? "it cannot be opened" : "it does not exist"));
   }
-  std::ostringstream buffer;
-  buffer << file.rdbuf();
-  std::string text = std::move(buffer).str();
+  std::string text;
+  std::string chunk(std::size_t{1} << 20, '\0');
+  do {
+    file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
+    const std::string_view read(chunk.data(), static_cast<std::size_t>(file.gcount()));
+    // At once, so that a large binary file or a device such as /dev/zero is not read to its end.
+    if (read.find('\0') != std::string_view::npos) throw Error(fmt::format("'{}' is no text file", path.string()));
+    text += read;
+  } while (file);
   if (file.bad()) throw Error(fmt::format("cannot read '{}': reading failed", path.string()));
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
   if (text.empty()) throw Error(fmt::format("'{}' is empty", path.string()));
-  if (text.find('\0') != std::string::npos) throw Error(fmt::format("'{}' is no text file", path.string()));
   return text;
 }
 
@@ -105,7 +111,14 @@ std::string_view take_word(std::string_view& text) {
   return word;
 }
 
-bool parse_number(std::string_view word, double& value) { return parse_whole(word, value); }
+bool parse_number(std::string_view word, double& value) {
+  if (parse_whole(word, value)) return true;
+  // Beyond the range of double, what remains is 0 or infinity.
+  long double wide = 0;
+  if (!parse_whole(word, wide)) return false;
+  value = static_cast<double>(wide);
+  return true;
+}
 bool parse_integer(std::string_view word, int& value) { return parse_whole(word, value); }
 
 }  // namespace tandem::pathtracer

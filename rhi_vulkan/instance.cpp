@@ -95,10 +95,8 @@ Instance::Instance(bool driver_validation, rhi::MessageCallback on_message)
                                    .ppEnabledLayerNames = layers.data(),
                                    .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
                                    .ppEnabledExtensionNames = extensions.data()};
-    if (driver_validation)
-      info.pNext = &validation_features;
-    else if (listens)
-      info.pNext = &messenger;
+    // Otherwise nobody listens yet: what the loader says of a machine without drivers is the error's sentence.
+    if (driver_validation) info.pNext = &validation_features;
     instance_ = vk::raii::Instance(loader_, info);
     if (listens) messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, messenger);
   } catch (const vk::IncompatibleDriverError&) {

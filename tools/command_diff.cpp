@@ -63,20 +63,22 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
 int compare_devices(const Options& options) {
   const pathtracer::Scene scene = load_scene(options.render);
   const pathtracer::RenderSettings settings = render_settings(options.render, scene);
-  // Both before the first rendering, so that a wrong name does not cost one.
+  // Both before the first rendering, so that a wrong name or a picture too large for one of them does not cost any.
   const rhi::DeviceHandle device_a = open_device(options.a, options.render);
   const rhi::DeviceHandle device_b = open_device(options.b, options.render);
+  pathtracer::Renderer renderer_a(device_a, scene, settings);
+  pathtracer::Renderer renderer_b(device_b, scene, settings);
   DiffReport report;
   const std::vector<OutputFile> files = output_files(options, report);
   const std::optional<OutputFolder> folder =
       options.folder.empty() ? std::nullopt : std::make_optional<OutputFolder>(options.folder);
-  for (const OutputFile& file : files) check_output_path(file.path);
+  check_output_files(files);
   report.options = options.render;
   report.triangles = scene.triangles.size();
   report.tolerance = options.tolerance;
-  report.a = render(device_a, scene, settings, options.render.samples);
+  report.a = render(renderer_a, device_a->info(), options.render.samples);
   print_warnings(report.a.warnings);
-  report.b = render(device_b, scene, settings, options.render.samples);
+  report.b = render(renderer_b, device_b->info(), options.render.samples);
   report.metrics = compare::measure(report.a.image, report.b.image);
   report.verdict = compare::judge(report.metrics, report.tolerance);
   fmt::print("{}", table(report));

@@ -6,7 +6,9 @@
 
 #include "pathtracer/generate.hpp"
 #include "tools/command.hpp"
+#include "tools/interruption.hpp"
 #include "tools/option_values.hpp"
+#include "tools/progress_bar.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -17,7 +19,15 @@ struct Options {
 };
 
 int generate(const Options& options) {
-  const std::uint64_t triangles = pathtracer::generate_spheres(options.triangles, options.output);
+  std::uint64_t triangles = 0;
+  {
+    ProgressBar bar("generate");
+    triangles = pathtracer::generate_spheres(options.triangles, options.output, [&](double fraction) {
+      bar.show(fraction);
+      return !interrupted();
+    });
+  }
+  if (triangles == 0) throw Interrupted();
   fmt::print("{}: {} triangles\n", options.output.string(), triangles);
   return exit_code::success;
 }

@@ -23,8 +23,9 @@ struct Options {
 int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
   const pathtracer::Scene scene = load_scene(options.render);
-  const Rendering rendering = render(open_device(options.device, options.render), scene,
-                                     render_settings(options.render, scene), options.render.samples);
+  const rhi::DeviceHandle device = open_device(options.device, options.render);
+  pathtracer::Renderer renderer(device, scene, render_settings(options.render, scene));
+  const Rendering rendering = render(renderer, device->info(), options.render.samples);
   print_warnings(rendering.warnings);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {
                           pathtracer::write_image(path, rendering.image, rendering.metadata);

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstdlib>
+#include <set>
 #include <system_error>
 
 #include "pathtracer/atomic_file.hpp"
@@ -28,7 +29,12 @@ void check_output_path(const std::filesystem::path& path) {
 
 OutputFolder::OutputFolder(std::filesystem::path path) : path_(std::move(path)) {
   std::error_code error;
-  made_ = std::filesystem::create_directories(path_, error);
+  for (std::filesystem::path missing = path_; !missing.empty() && !std::filesystem::exists(missing, error);
+       missing = missing.parent_path()) {
+    made_.push_back(missing);
+  }
+  error.clear();
+  std::filesystem::create_directories(path_, error);
   if (!std::filesystem::is_directory(path_)) {
     throw pathtracer::Error(fmt::format("the folder '{}' cannot be made: {}", path_.string(),
                                         error ? error.message() : "a file of that name exists"));
@@ -38,13 +44,23 @@ OutputFolder::OutputFolder(std::filesystem::path path) : path_(std::move(path)) 
 OutputFolder::~OutputFolder() {
   // Fails, as it should, when there is anything inside.
   std::error_code not_empty;
-  if (made_) std::filesystem::remove(path_, not_empty);
+  for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, not_empty);
 }
 
 void write_text(const std::filesystem::path& path, const std::string& text) {
   pathtracer::AtomicFile file(path);
   file.write(std::as_bytes(std::span(text)));
   file.commit();
+}
+
+void check_output_files(std::span<const OutputFile> files) {
+  std::set<std::filesystem::path> paths;
+  for (const OutputFile& file : files) {
+    check_output_path(file.path);
+    if (!paths.insert(std::filesystem::weakly_canonical(file.path)).second) {
+      throw pathtracer::Error(fmt::format("two results would be written into '{}'", file.path.string()));
+    }
+  }
 }
 
 void write_or_rescue(std::span<const OutputFile> files) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 /// Files that hold what took long to compute.
 namespace tandem::tools {
@@ -11,8 +12,8 @@ namespace tandem::tools {
 /// Throws pathtracer::Error unless a file could be written there now.
 void check_output_path(const std::filesystem::path& path);
 
-/// A folder for results, made with its parents unless it exists. One that was made is removed again when nothing has
-/// been written into it by the time this object goes.
+/// A folder for results, made with its parents unless it exists. Those that were made are removed again when nothing
+/// has been written into them by the time this object goes.
 class OutputFolder {
  public:
   /// Throws pathtracer::Error when it cannot be made or is no folder.
@@ -25,7 +26,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path path_;
-  bool made_ = false;
+  std::vector<std::filesystem::path> made_;  ///< innermost first
 };
 
 /// Writes the text under a temporary name, then renames. Throws pathtracer::Error.
@@ -35,6 +36,9 @@ struct OutputFile {
   std::filesystem::path path;
   std::function<void(const std::filesystem::path&)> write;  ///< writes the file whole or throws
 };
+
+/// Throws pathtracer::Error unless all of them could be written now, each beside the others.
+void check_output_files(std::span<const OutputFile> files);
 
 /// Writes the files. What cannot be written although its path was good before the computation (a disk that filled up
 /// since) is saved under its name in a new folder for temporary files instead; then throws pathtracer::Error that says

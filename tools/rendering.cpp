@@ -1,5 +1,9 @@
 #include "tools/rendering.hpp"
 
+#include <cmath>
+
+#include <glm/vec3.hpp>
+
 #include "devices/devices.hpp"
 #include "pathtracer/obj_loader.hpp"
 #include "tools/interruption.hpp"
@@ -7,6 +11,17 @@
 #include "tools/progress_bar.hpp"
 
 namespace tandem::tools {
+namespace {
+
+/// Upwards is +y in the picture, or -z where the camera looks straight up or down.
+glm::vec3 up_for(const pathtracer::Camera& camera) {
+  const glm::dvec3 view = glm::dvec3(camera.target) - glm::dvec3(camera.position);
+  constexpr double smallest_slope = 1e-5;  // far above what the renderer takes for parallel
+  const bool vertical = std::hypot(view.x, view.z) <= smallest_slope * std::abs(view.y);
+  return vertical ? glm::vec3(0, 0, -1) : glm::vec3(0, 1, 0);
+}
+
+}  // namespace
 
 pathtracer::Scene load_scene(const RenderOptions& options) {
   pathtracer::Scene scene = pathtracer::load_obj(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
@@ -30,6 +45,7 @@ pathtracer::RenderSettings render_settings(const RenderOptions& options, const p
     }
     camera.target = options.camera_target.value_or(camera.target);
     camera.vertical_fov = options.field_of_view.value_or(camera.vertical_fov);
+    if (options.camera_position || options.camera_target) camera.up = up_for(camera);
     settings.camera = camera;
   }
   return settings;
@@ -53,12 +69,10 @@ void render_samples(pathtracer::Renderer& renderer, std::uint32_t samples, const
   if (!finished || interrupted()) throw Interrupted();
 }
 
-Rendering render(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
-                 const pathtracer::RenderSettings& settings, std::uint32_t samples) {
-  pathtracer::Renderer renderer(device, scene, settings);
-  render_samples(renderer, samples, device->info().name);
+Rendering render(pathtracer::Renderer& renderer, const rhi::DeviceInfo& device, std::uint32_t samples) {
+  render_samples(renderer, samples, device.name);
   return {.image = renderer.image(),
-          .device = device->info(),
+          .device = device,
           .camera = renderer.camera(),
           .background = renderer.background(),
           .milliseconds = renderer.device_milliseconds(),

@@ -38,9 +38,8 @@ struct Rendering {
 /// Adds the samples with a progress bar. Throws Interrupted.
 void render_samples(pathtracer::Renderer& renderer, std::uint32_t samples, const std::string& label);
 
-/// Renders on the device with a progress bar. Throws Interrupted.
-Rendering render(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
-                 const pathtracer::RenderSettings& settings, std::uint32_t samples);
+/// Renders on the device, which is the renderer's, with a progress bar. Throws Interrupted.
+Rendering render(pathtracer::Renderer& renderer, const rhi::DeviceInfo& device, std::uint32_t samples);
 
 /// Millions a second.
 double per_second_in_millions(double count, double milliseconds);

@@ -150,6 +150,10 @@ TEST_CASE("What cannot be meant is one sentence with file and line") {
   CHECK(contains(error_of("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "test.obj:2: "));
   CHECK(contains(error_of("v 0 0 0\nv 0 inf 0\nv 0 1 0\nf 1 2 3\n"), "'inf'"));
   CHECK(contains(error_of("v 0 0 0\nv 0 1e39 0\nv 0 1 0\nf 1 2 3\n"), "'1e39'"));
+  CHECK(contains(error_of("v 0 0 0\nv 0 1e400 0\nv 0 1 0\nf 1 2 3\n"), "'1e400' is no finite number"));
+  CHECK(contains(error_of("v 0 0 0\nv 0 -2e12 0\nv 0 1 0\nf 1 2 3\n"), "'-2e12' is beyond 1e+12"));
+  CHECK(
+      contains(error_of("v 1" + std::string(330, '0') + "e-330 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "too many digits"));
   CHECK(contains(error_of("v 0 0 0\nv 0 1,5 0\nv 0 1 0\nf 1 2 3\n"), "'1,5'"));
   CHECK(contains(error_of(square + "f 1 2 5\n"), "test.obj:5: the vertex index 5 is out of range: there are 4"));
   CHECK(contains(error_of(square + "f 1 2 -5\n"), "index -5 is out of range"));
@@ -165,6 +169,19 @@ TEST_CASE("What cannot be meant is one sentence with file and line") {
   CHECK(contains(error_of("mtllib test.mtl\n" + square + "f 1 2 3\n", "newmtl a\nKd x\n"), "test.mtl:2: "));
   for (const std::string& sentence : {error_of(square), error_of("v 1\n")})
     CHECK(sentence.find('\n') == std::string::npos);
+}
+
+TEST_CASE("A byte order mark hides nothing") {
+  CHECK(load("\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").triangles.size() == 1);
+  CHECK(contains(error_of("\xef\xbb\xbf"), "is empty"));
+}
+
+TEST_CASE("A coordinate too small for any float is 0") {
+  CHECK(load("v 1e-400 -1e-320 1e-50\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").positions[0] == glm::vec3(0));
+}
+
+TEST_CASE("A file without end is refused when its first bytes are no text") {
+  CHECK_THROWS_AS(load_obj("/dev/zero"), Error);
 }
 
 TEST_CASE("A file that is cut off is an error where it shows") {

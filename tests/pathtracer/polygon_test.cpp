@@ -1,7 +1,9 @@
 #include "pathtracer/polygon.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <random>
 
 #include <doctest/doctest.h>
 #include <glm/geometric.hpp>
@@ -94,4 +96,18 @@ TEST_CASE("A concave polygon is covered once, in every orientation in space") {
 TEST_CASE("A polygon without area still gives its triangles") {
   CHECK(triangulate(std::vector<glm::vec3>(6, glm::vec3(1, 2, 3))).size() == 4);
   CHECK(triangulate(std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}).size() == 3);
+}
+
+TEST_CASE("A large polygon that crosses itself everywhere is triangulated in reasonable time") {
+  std::vector<glm::vec3> corners;
+  std::minstd_rand random(1);
+  const auto unit = [&] { return static_cast<float>(random() % 1024) / 1024; };
+  for (int i = 0; i < 20000; ++i) {
+    const float x = unit();
+    corners.push_back({x, unit(), 0});
+  }
+  const auto start = std::chrono::steady_clock::now();
+  CHECK(triangulate(corners).size() == corners.size() - 2);
+  // It takes about one; with a search for each corner, a hundred times as long.
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(30));
 }

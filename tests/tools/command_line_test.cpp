@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -85,6 +86,8 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
       {{"diff", "missing.obj", "--out", "new"}, "missing.obj"},
       {{"diff", box, "--a", "cpu", "--b", "cpu", "--json", "missing/diff.json", "--out", "new"}, "missing"},
       {{"diff", box, "--a", "cpu", "--b", "cpu", "--out", box}, "cornell_box.obj"},
+      {{"diff", box, "--a", "cpu", "--b", "cpu", "--out", "new", "--json", "./new/../new/a.png"}, "two results"},
+      {{"diff", box, "--a", "cpu", "--b", "cpu", "--out", "new/deep", "--json", "missing/x"}, "missing"},
       {{"diff", box, "--a", "cpu", "--b", "cpu", "--min-bit-equal", "1.5"},
        "--min-bit-equal: '1.5' is not a number from 0 to 1"},
       {{"bench", box}, "--device is required"},
@@ -107,6 +110,21 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
     CAPTURE(outcome.errors);
     CHECK(folder.names().empty());
   }
+}
+
+TEST_CASE("without a Vulkan driver the error is one sentence, and the CPU device works") {
+  const TemporaryFolder folder;
+  setenv("VK_DRIVER_FILES", "/nonexistent", 1);
+  setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
+  const Outcome vulkan = run_tandem({"render", box, "-o", "x.png", "--device", "vulkan"}, {.folder = folder.path()});
+  const Outcome cpu =
+      run_tandem({"render", box, "-o", "x.png", "--size", "8x8", "--spp", "1"}, {.folder = folder.path()});
+  unsetenv("VK_DRIVER_FILES");
+  unsetenv("VK_ICD_FILENAMES");
+  CHECK(vulkan.exit_code == 2);
+  CHECK(vulkan.errors == "tandem: no Vulkan driver is installed\n");
+  CHECK(cpu.exit_code == 0);
+  CHECK(cpu.errors == "");
 }
 
 TEST_CASE("a scene that cannot be used is one sentence and exit code 2") {

@@ -77,6 +77,15 @@ TEST_CASE("the camera and background options reach the picture") {
   }
 }
 
+TEST_CASE("the camera may look straight down") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_tandem({"render", box, "--size", "8x8", "--spp", "1", "--camera-position", "278,400,280",
+                                      "--camera-target", "278,0,280", "-o", "x.exr"},
+                                     {.folder = folder.path()});
+  CHECK(outcome.errors == "");
+  CHECK(outcome.exit_code == 0);
+}
+
 TEST_CASE("a missing MTL file is an error, unless it is allowed") {
   const TemporaryFolder folder;
   std::ofstream(folder.path() / "grey.obj") << "mtllib absent.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n";
@@ -215,6 +224,15 @@ TEST_CASE("an interrupt ends a long rendering soon and leaves nothing") {
     CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
     CHECK(folder.names().empty());
   }
+}
+
+TEST_CASE("an interrupt ends the generation of a large scene and leaves nothing") {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_tandem({"generate", "--triangles", "100000000", "-o", "x.obj"},
+                                     {.folder = folder.path(), .interrupt_after_ms = 500});
+  CHECK(outcome.exit_code == 130);
+  CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
+  CHECK(folder.names().empty());
 }
 
 TEST_CASE("results that no disk takes are still printed, and no half file stays") {
