@@ -24,8 +24,8 @@ constexpr float default_ior = 1.5f;
 /// What is gathered while the statements pass by.
 struct Reading {
   WavefrontText* text = nullptr;
-  bool inside_material = false;
-  std::set<std::string> maps;  ///< texture statements that are ignored
+  std::vector<std::string> names;  ///< of the materials so far, whole: newer tinyobjloaders end a name at a blank
+  std::set<std::string> maps;      ///< texture statements that are ignored
 };
 
 /// "Kd r g b" with the numbers checked; "Kd r" means r three times.
@@ -71,8 +71,8 @@ std::string filter(Reading& reading, std::string_view text) {
   const Statement statement = split_statement(text);
   if (statement.keyword == "newmtl") {
     if (statement.rest.empty()) throw reading.text->error("newmtl names no material");
-    reading.inside_material = true;
-    return fmt::format("newmtl {}\n{}", statement.rest, defaults);
+    reading.names.emplace_back(statement.rest);
+    return fmt::format("newmtl material{}\n{}", reading.names.size(), defaults);
   }
   const bool is_map = statement.keyword.starts_with("map_") || statement.keyword == "bump" ||
                       statement.keyword == "disp" || statement.keyword == "decal" || statement.keyword == "refl" ||
@@ -81,7 +81,7 @@ std::string filter(Reading& reading, std::string_view text) {
   const bool is_color =
       statement.keyword == "Kd" || statement.keyword == "Ks" || statement.keyword == "Ke" || statement.keyword == "Tf";
   if (!is_color && statement.keyword != "Ni" && statement.keyword != "illum") return {};
-  if (!reading.inside_material)
+  if (reading.names.empty())
     throw reading.text->error(fmt::format("{} stands before the first newmtl", statement.keyword));
   if (statement.keyword == "Ni") return checked_ior(reading, statement);
   if (statement.keyword == "illum") return checked_illum(reading, statement);
@@ -137,24 +137,26 @@ std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vect
   std::vector<tinyobj::material_t> sources;
   std::string warning, error;
   tinyobj::LoadMtl(&names, &sources, &text.stream(), &warning, &error);
-  if (!reading.inside_material) return {};  // tinyobjloader then gives one that has no name
+  if (reading.names.empty()) return {};  // tinyobjloader then gives one that has no name
 
   std::vector<NamedMaterial> materials;
   std::set<std::string> bright, without_ior, repeated;
-  for (const tinyobj::material_t& source : sources) {
-    const auto same_name = [&](const NamedMaterial& other) { return other.name == source.name; };
+  for (std::size_t index = 0; index < sources.size(); ++index) {
+    const tinyobj::material_t& source = sources[index];
+    const std::string& name = reading.names[index];
+    const auto same_name = [&](const NamedMaterial& other) { return other.name == name; };
     if (std::any_of(materials.begin(), materials.end(), same_name)) {
-      repeated.insert(source.name);
+      repeated.insert(name);
       continue;
     }
     bool default_ior_used = false;
     const GpuMaterial material = material_of(source, default_ior_used);
-    if (default_ior_used) without_ior.insert(source.name);
+    if (default_ior_used) without_ior.insert(name);
     const bool gains = material.model == MaterialModel::diffuse  ? exceeds_one(material.base_color)
                        : material.model == MaterialModel::mirror ? exceeds_one(material.reflectance)
                                                                  : exceeds_one(material.transmittance);
-    if (gains) bright.insert(source.name);
-    materials.push_back({source.name, material});
+    if (gains) bright.insert(name);
+    materials.push_back({name, material});
   }
   const auto warn = [&](const std::set<std::string>& what, const char* sentence) {
     if (!what.empty()) warnings.push_back(fmt::format(fmt::runtime(sentence), path.string(), abbreviated(what)));
