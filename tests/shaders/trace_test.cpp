@@ -101,8 +101,9 @@ TANDEM_DEVICE_TEST(
   // The last sphere lies ten radii from the origin: its coordinates have fewer bits for its shape.
   const std::vector<std::pair<glm::dvec3, double>> spheres = {
       {{0, 0, 0}, 1}, {{0, 0, 0}, 1e-4}, {{0, 0, 0}, 1e4}, {{0.5, 0, -0.5}, 1}, {{1000, -700, 500}, 100}};
-  for (const auto& [centre, radius] : spheres) {
-    INFO("radius ", radius);
+  for (const auto& centre_and_radius : spheres) {
+    const auto& [centre, radius] = centre_and_radius;
+    INFO("radius ", centre_and_radius.second);
     const test::TestScene scene = sphere(centre, radius);
     const test::DeviceScene device_scene = test::upload(device, scene);
     const auto triangle_count = static_cast<std::uint32_t>(scene.triangles.size());

@@ -25,8 +25,9 @@ TEST_CASE("every command explains itself and all its options") {
       {"bench", {"SCENE", "--device", "--repeat", "--json", "--size", "--spp", "Example"}}};
   const Outcome overview = run_tandem({"--help"});
   CHECK(overview.exit_code == 0);
-  for (const auto& [command, words] : commands) {
-    CAPTURE(command);
+  for (const auto& entry : commands) {
+    const auto& [command, words] = entry;
+    CAPTURE(entry.first);
     CHECK(overview.output.find("\n  " + command) != std::string::npos);
     const Outcome help = run_tandem({command, "--help"});
     CHECK(help.exit_code == 0);
@@ -135,8 +136,9 @@ TEST_CASE("a scene that cannot be used is one sentence and exit code 2") {
       {"nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"},
       {"index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n"},
       {"no_material.obj", "mtllib absent.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"}};
-  for (const auto& [name, text] : scenes) {
-    CAPTURE(name);
+  for (const auto& scene : scenes) {
+    const auto& [name, text] = scene;
+    CAPTURE(scene.first);
     write_text(folder.path() / name, text);
     const Outcome outcome = run_tandem({"render", name, "-o", "x.png"}, {.folder = folder.path()});
     CAPTURE(outcome.errors);
