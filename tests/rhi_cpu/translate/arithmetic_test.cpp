@@ -12,6 +12,13 @@
 
 namespace {
 
+/// clang links no sanitizer runtime into a shared library, so there undefined behaviour is a trap instead of a message.
+#ifdef __clang__
+constexpr const char* undefined_behavior_ends = "-fsanitize-trap=undefined";
+#else
+constexpr const char* undefined_behavior_ends = "-fno-sanitize-recover=all";
+#endif
+
 using tandem::test::evaluate;
 using tandem::test::Kernel;
 using tandem::test::KernelOptions;
@@ -30,7 +37,7 @@ std::vector<std::int32_t> run(const std::string& statements, std::vector<std::in
                               std::size_t count) {
   // Undefined behaviour in the translated code ends the test.
   const KernelOptions options = {.specialization = {},
-                                 .more_options = {"-fsanitize=undefined", "-fno-sanitize-recover=all"}};
+                                 .more_options = {"-fsanitize=undefined", undefined_behavior_ends}};
   std::vector<std::int32_t> result(count, 12345);
   Kernel(inputs + ("void main() {\n" + statements + "}\n"), options).run({resource(result), resource(i), resource(f)});
   return result;
