@@ -38,7 +38,7 @@ std::optional<std::string> environment_variable(const char* name) {
 }
 
 /// Where the cache is to be; "" when the environment names no place.
-fs::path wanted_folder(fs::path chosen) {
+fs::path wanted_folder(const fs::path& chosen) {
   if (!chosen.empty()) return fs::absolute(chosen);
   if (const auto folder = environment_variable("TANDEM_CACHE_DIR")) return fs::absolute(*folder);
   // The XDG base directory specification has relative paths ignored.
@@ -186,7 +186,7 @@ KernelLibraryHandle KernelCache::add(const ContentHash& key, const fs::path& lib
 }
 
 fs::path KernelCache::keep_failure(TemporaryFolder folder, const ContentHash& key) {
-  const fs::path kept = folder_ / ("failed-" + key.hex());
+  fs::path kept = folder_ / ("failed-" + key.hex());
   std::error_code error;
   fs::remove_all(kept, error);
   fs::rename(folder.path(), kept, error);

@@ -34,7 +34,7 @@ fs::path find_program(const std::string& name) {
   const char* variable = std::getenv("PATH");
   std::istringstream folders(variable == nullptr ? "/usr/local/bin:/usr/bin:/bin" : variable);
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path path = fs::absolute(folder.empty() ? "." : folder) / name;
+    fs::path path = fs::absolute(folder.empty() ? "." : folder) / name;
     if (is_program(path)) return path;
   }
   return {};
