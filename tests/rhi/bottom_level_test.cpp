@@ -24,7 +24,7 @@ std::vector<ProbeHit> trace_alone(rhi::Device& device, const rhi::AccelerationSt
 }  // namespace
 
 TANDEM_DEVICE_TEST("a ray meets a triangle where geometry says, and misses beside it") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto bottom_level = build_bottom_level(device, {triangles_of(device, triangle_at(0, 0, 2))});
   CHECK(bottom_level->device_address() != 0);
   const std::vector<ProbeHit> hits = trace_alone(device, bottom_level,
@@ -47,7 +47,7 @@ TANDEM_DEVICE_TEST("a ray meets a triangle where geometry says, and misses besid
 }
 
 TANDEM_DEVICE_TEST("indices of 16 and 32 bits, with offsets and strides") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   // Vertices 20 bytes apart, from byte 8 on; triangle i, at (2 i, 0), is written with its vertices in reverse.
   std::vector<float> interleaved(2, -1);
   for (float x : {0.0f, 2.0f})
@@ -80,7 +80,7 @@ TANDEM_DEVICE_TEST("indices of 16 and 32 bits, with offsets and strides") {
 }
 
 TANDEM_DEVICE_TEST("geometries are numbered and have transforms and flags of their own") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   // The second is scaled by 2 and moved to (10, 0, 1); its matrix lies 16 bytes into a buffer.
   const std::vector<float> matrix = {-1, -1, -1, -1, 2, 0, 0, 10, 0, 2, 0, 0, 0, 0, 2, 1};
   rhi::TriangleGeometry second = triangles_of(device, triangle_at(0, 0, 0), rhi::GeometryFlags::none);
@@ -104,7 +104,7 @@ TANDEM_DEVICE_TEST("geometries are numbered and have transforms and flags of the
 }
 
 TANDEM_DEVICE_TEST("a structure without triangles is never hit") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto no_geometry = build_bottom_level(device, {}, "no geometry");
   const auto no_triangles = build_bottom_level(device, {rhi::TriangleGeometry()}, "no triangles");
   const auto top_level = build_top_level(device, {rhi::make_instance(*no_geometry), rhi::make_instance(*no_triangles)});
@@ -112,7 +112,7 @@ TANDEM_DEVICE_TEST("a structure without triangles is never hit") {
 }
 
 TANDEM_DEVICE_TEST("a structure may be built again, over other buffers") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const rhi::BottomLevelDesc first = {.geometries = {triangles_of(device, triangle_at(0, 0, 0))}, .label = "rebuilt"};
   const rhi::BottomLevelDesc second = {.geometries = {triangles_of(device, triangle_at(4, 0, 0))}, .label = "rebuilt"};
   const rhi::AccelerationStructureHandle structure = device.create_bottom_level(first);
@@ -126,7 +126,7 @@ TANDEM_DEVICE_TEST("a structure may be built again, over other buffers") {
 }
 
 TANDEM_DEVICE_TEST("many structures are built in one list, each from its own vertices") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   constexpr std::uint32_t count = 200;
   const rhi::CommandListHandle list = device.create_command_list("many builds");
   std::vector<rhi::AccelerationStructureHandle> structures;
@@ -147,7 +147,7 @@ TANDEM_DEVICE_TEST("many structures are built in one list, each from its own ver
 }
 
 TANDEM_DEVICE_TEST("a large structure is built whole") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   constexpr std::uint32_t side = 300;  // 90,000 triangles: more than one chunk of scratch memory
   std::vector<float> positions;
   for (std::uint32_t i = 0; i < side * side; ++i) {

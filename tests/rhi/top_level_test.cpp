@@ -29,7 +29,7 @@ rhi::AccelerationStructureHandle one_triangle(rhi::Device& device,
 }  // namespace
 
 TANDEM_DEVICE_TEST("instances have transforms, indices and offsets") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto bottom_level = one_triangle(device);
   rhi::InstanceDesc turned = rhi::make_instance(*bottom_level, {0, -2, 0, 10, 2, 0, 0, 0, 0, 0, 1, 1});
   turned.custom_index = 0xabcdef;
@@ -53,7 +53,7 @@ TANDEM_DEVICE_TEST("instances have transforms, indices and offsets") {
 }
 
 TANDEM_DEVICE_TEST("an instance is met when its mask and the ray's share a bit") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto bottom_level = one_triangle(device);
   rhi::InstanceDesc masked = rhi::make_instance(*bottom_level);
   masked.mask = 0x0a;
@@ -68,7 +68,7 @@ TANDEM_DEVICE_TEST("an instance is met when its mask and the ray's share a bit")
 }
 
 TANDEM_DEVICE_TEST("facing is decided in object space, and instances may flip it or forbid culling") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   // The front is the side that (v1 - v0) x (v2 - v0) points to, here up: clockwise as seen in the left-handed system in
   // which the ray tracing interfaces think. A mirroring transform does not change that: facing is decided in object
   // space.
@@ -96,7 +96,7 @@ TANDEM_DEVICE_TEST("facing is decided in object space, and instances may flip it
 }
 
 TANDEM_DEVICE_TEST("opacity is the geometry's, then the instance's, then the ray's") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto opaque = one_triangle(device);
   const auto transparent = one_triangle(device, rhi::GeometryFlags::none);
   rhi::InstanceDesc forced_opaque = rhi::make_instance(*transparent, moved(8, 0, 0));
@@ -123,7 +123,7 @@ TANDEM_DEVICE_TEST("opacity is the geometry's, then the instance's, then the ray
 }
 
 TANDEM_DEVICE_TEST("of several triangles the closest is committed") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto opaque = one_triangle(device);
   const auto transparent = one_triangle(device, rhi::GeometryFlags::none);
   const auto top_level = build_top_level(
@@ -139,7 +139,7 @@ TANDEM_DEVICE_TEST("of several triangles the closest is committed") {
 }
 
 TANDEM_DEVICE_TEST("no instances, inactive instances, and builds with fewer than at creation") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto bottom_level = one_triangle(device);
   const rhi::InstanceDesc active = rhi::make_instance(*bottom_level);
   rhi::InstanceDesc inactive = active;
@@ -172,7 +172,7 @@ TANDEM_DEVICE_TEST("no instances, inactive instances, and builds with fewer than
 }
 
 TANDEM_DEVICE_TEST("a shader may write the instances, and one list builds and traces") {
-  if (!device.info().capabilities.ray_query) return;
+  REQUIRE(device.info().capabilities.ray_query);
   const auto bottom_level = one_triangle(device);
   const std::string write_source = R"(#version 460
 layout(local_size_x = 1) in;
