@@ -22,7 +22,18 @@ enum class GeometryFlags : std::uint32_t {
 template <>
 inline constexpr bool is_flags<GeometryFlags> = true;
 
-enum class VertexFormat : std::uint32_t { float3 };
+/// How a position is stored. A vertex stride is a multiple of the size of one component.
+enum class VertexFormat : std::uint32_t {
+  float3,  ///< three 32-bit floats
+  half3,   ///< three 16-bit floats
+  snorm3   ///< three signed 16-bit integers n that mean max(n / 32767, -1)
+};
+
+/// Bytes of one position: 12 or 6.
+std::uint32_t size_of(VertexFormat format);
+/// Bytes of one component: 4 or 2.
+std::uint32_t component_size_of(VertexFormat format);
+
 enum class IndexFormat : std::uint32_t { none, uint16, uint32 };
 
 /// Triangles of one geometry, in the object space of the structure they are built into.
@@ -38,11 +49,11 @@ struct TriangleGeometry {
   GeometryFlags flags = GeometryFlags::opaque;
 };
 
-/// Axis-aligned boxes, for which a shader computes the hit. Devices without Capabilities::aabb_geometry refuse it.
+/// Axis-aligned boxes, for which a shader computes the hit. A box with a NaN in its minimum is inactive.
 struct AabbGeometry {
   BufferRange boxes;  ///< six floats each (minimum, maximum), `stride` bytes apart
   std::uint32_t box_count = 0;
-  std::uint32_t stride = 24;
+  std::uint32_t stride = 24;  ///< at least 24, a multiple of 8
   GeometryFlags flags = GeometryFlags::opaque;
 };
 
@@ -70,10 +81,22 @@ enum class InstanceFlags : std::uint32_t {
 template <>
 inline constexpr bool is_flags<InstanceFlags> = true;
 
+/// What a build is made for. Vulkan: VkBuildAccelerationStructureFlagBitsKHR.
+enum class BuildFlags : std::uint32_t {
+  none = 0,
+  allow_update = 1 << 0,       ///< update_bottom_level and update_top_level may be called
+  allow_compaction = 1 << 1,   ///< Device::create_compacted may be called
+  prefer_fast_trace = 1 << 2,  ///< not together with prefer_fast_build
+  prefer_fast_build = 1 << 3
+};
+template <>
+inline constexpr bool is_flags<BuildFlags> = true;
+
 /// What to build a bottom level from. Building reads the buffers when the command executes; afterwards they are not
 /// needed.
 struct BottomLevelDesc {
-  std::vector<Geometry> geometries;  ///< all triangles or all boxes
+  std::vector<Geometry> geometries;  ///< all triangles or all boxes; none: nothing to hit
+  BuildFlags flags = BuildFlags::prefer_fast_trace;
   std::string label;
 };
 
@@ -81,7 +104,15 @@ struct BottomLevelDesc {
 struct TopLevelDesc {
   BufferRange instances;  ///< instance_count InstanceDesc, 64 bytes each, at an offset that is a multiple of 16
   std::uint32_t instance_count = 0;
+  BuildFlags flags = BuildFlags::prefer_fast_trace;
   std::string label;
+};
+
+/// Memory of an acceleration structure in bytes. The scratch memory is the backend's business; this says what it takes.
+struct AccelerationStructureSizes {
+  std::uint64_t structure = 0;       ///< the structure itself; on the CPU known, and not 0, once it is built
+  std::uint64_t build_scratch = 0;   ///< while it is built; 0 where the backend keeps no such memory
+  std::uint64_t update_scratch = 0;  ///< while it is updated; 0 without BuildFlags::allow_update
 };
 
 /// A bottom level (geometries) or a top level (instances). Created from a desc for its size, usable once built by
@@ -99,6 +130,7 @@ class AccelerationStructure {
 
   /// For InstanceDesc::blas_address. Never 0.
   virtual std::uint64_t device_address() const = 0;
+  virtual AccelerationStructureSizes sizes() const = 0;
 
  protected:
   AccelerationStructure(Level level, std::string label) : level_(level), label_(std::move(label)) {}

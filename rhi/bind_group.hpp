@@ -8,12 +8,14 @@
 
 #include "rhi/acceleration_structure.hpp"
 #include "rhi/buffer.hpp"
-#include "rhi/compute_pipeline.hpp"
+#include "rhi/pipeline.hpp"
+#include "rhi/texture.hpp"
 
 namespace tandem::rhi {
 
-/// What one descriptor refers to: a buffer range, or a built top level.
-using BoundResource = std::variant<BufferRange, AccelerationStructureHandle>;
+/// What one descriptor refers to: a buffer range, a built top level, or a texture. A null AccelerationStructureHandle
+/// is a structure that no ray meets, where the device has Capabilities::null_acceleration_structure.
+using BoundResource = std::variant<BufferRange, AccelerationStructureHandle, TextureHandle>;
 
 struct BindGroupEntry {
   std::uint32_t binding = 0;
@@ -23,14 +25,14 @@ struct BindGroupEntry {
 
 /// The resources of one descriptor set of a pipeline: every element of every binding that the shader uses, once.
 struct BindGroupDesc {
-  ComputePipelineHandle pipeline;
+  PipelineHandle pipeline;
   std::uint32_t set = 0;
   std::vector<BindGroupEntry> entries;
   std::string label;
 };
 
-/// Immutable once created; keeps its resources alive. It may be used with every pipeline whose shader declares the same
-/// bindings for this set.
+/// Immutable once created; keeps its resources alive. It may be used with every pipeline whose shaders declare
+/// the same bindings for this set.
 class BindGroup {
  public:
   virtual ~BindGroup() = default;

@@ -13,8 +13,9 @@ enum class BufferUsage : std::uint32_t {
   none = 0,
   storage = 1 << 0,                       ///< storage buffer in a bind group
   uniform = 1 << 1,                       ///< uniform buffer in a bind group
-  acceleration_structure_input = 1 << 2,  ///< vertices, indices, transforms or instances of a build
-  device_address = 1 << 3                 ///< device_address() may be called
+  acceleration_structure_input = 1 << 2,  ///< vertices, indices, boxes, transforms or instances of a build
+  device_address = 1 << 3,                ///< device_address() may be called, and shaders may use the address
+  indirect = 1 << 4                       ///< TraceRaysDesc::indirect_size
 };
 template <>
 inline constexpr bool is_flags<BufferUsage> = true;

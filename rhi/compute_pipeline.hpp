@@ -3,17 +3,12 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "rhi/shader_module.hpp"
+#include "rhi/pipeline.hpp"
 
 namespace tandem::rhi {
-
-/// The value of one specialisation constant of 32 bits: int, uint or float bits; bool: 0 or 1.
-struct SpecializationValue {
-  std::uint32_t id = 0;
-  std::uint32_t value = 0;
-};
 
 struct ComputePipelineDesc {
   ShaderModuleHandle shader;
@@ -22,18 +17,15 @@ struct ComputePipelineDesc {
 };
 
 /// A compute shader ready to run. Its bind group layouts are those that the shader's reflection gives.
-class ComputePipeline {
+class ComputePipeline : public Pipeline {
  public:
-  virtual ~ComputePipeline() = default;
-  ComputePipeline(const ComputePipeline&) = delete;
-  ComputePipeline& operator=(const ComputePipeline&) = delete;
-
-  const std::string& label() const noexcept { return desc_.label; }
   const ComputePipelineDesc& desc() const noexcept { return desc_; }
   const ShaderReflection& reflection() const noexcept { return desc_.shader->reflection(); }
 
  protected:
-  explicit ComputePipeline(ComputePipelineDesc desc) : desc_(std::move(desc)) {}
+  explicit ComputePipeline(ComputePipelineDesc desc)
+      : Pipeline(Kind::compute, desc.label, combined_interface({&desc.shader, 1}, desc.label)),
+        desc_(std::move(desc)) {}
 
  private:
   ComputePipelineDesc desc_;

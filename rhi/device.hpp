@@ -17,7 +17,10 @@
 #include "rhi/fence.hpp"
 #include "rhi/message.hpp"
 #include "rhi/query_pool.hpp"
+#include "rhi/ray_tracing_pipeline.hpp"
 #include "rhi/shader_module.hpp"
+#include "rhi/shader_table.hpp"
+#include "rhi/texture.hpp"
 
 namespace tandem::rhi {
 
@@ -28,7 +31,11 @@ struct Capabilities {
   bool ray_query = false;             ///< VK_KHR_ray_query
   bool ray_tracing_pipeline = false;  ///< VK_KHR_ray_tracing_pipeline
   bool position_fetch = false;        ///< VK_KHR_ray_tracing_position_fetch
-  bool aabb_geometry = false;         ///< AabbGeometry in a bottom level
+  bool trace_rays_indirect = false;   ///< TraceRaysDesc::indirect_size
+  bool primitive_culling = false;     ///< ray flags SkipTriangles and SkipAABBs in pipelines; ray queries have them
+  bool null_acceleration_structure = false;  ///< a bind group may hold a null AccelerationStructureHandle
+  bool buffer_references = false;            ///< GL_EXT_buffer_reference, with Buffer::device_address
+  bool non_uniform_indexing = false;  ///< GL_EXT_nonuniform_qualifier on arrays of buffers, images and structures
   bool scalar_block_layout = false;   ///< GL_EXT_scalar_block_layout
   bool shader_int64 = false;
   bool shader_float64 = false;
@@ -48,6 +55,14 @@ struct Limits {
   std::uint64_t max_geometry_count = 0;   ///< per bottom level
   std::uint64_t max_primitive_count = 0;  ///< per bottom level
   std::uint64_t max_instance_count = 0;   ///< per top level
+  std::uint32_t max_ray_recursion_depth = 0;
+  std::uint64_t max_ray_invocations = 0;  ///< of one trace_rays
+  std::uint32_t shader_record_alignment = 0;
+  std::uint32_t max_shader_record_stride = 0;
+  std::uint32_t shader_handle_size = 0;  ///< of a record, before its data
+  std::uint32_t max_hit_attribute_size = 0;
+  std::array<std::uint32_t, 4> max_texture_size = {0, 0, 0, 0};  ///< of a side, by TextureDimension
+  std::uint32_t max_texture_layers = 0;
 };
 
 /// What is known of a device before it is created, and what `tandem devices` prints.
@@ -63,7 +78,7 @@ struct DeviceInfo {
 };
 
 struct DeviceDesc {
-  std::string name = "cpu";                 ///< "cpu", "vulkan" (the first that qualifies), "vulkan:N"
+  std::string name = "cpu";                 ///< "cpu", "cpu-exact", "vulkan" (the first that qualifies), "vulkan:N"
   bool driver_validation = false;           ///< Vulkan: the Khronos validation layer, an error when it is not installed
   MessageCallback on_message = {};          ///< warnings, driver and validation messages
   std::uint32_t thread_count = 0;           ///< CPU: worker threads, 0 for all that the machine has
@@ -86,8 +101,15 @@ class Device {
   virtual BufferHandle create_buffer(const BufferDesc& desc) = 0;
   virtual AccelerationStructureHandle create_bottom_level(const BottomLevelDesc& desc) = 0;
   virtual AccelerationStructureHandle create_top_level(const TopLevelDesc& desc) = 0;
+  /// A built copy of a built structure in less memory, at another address. Waits for everything submitted. `source`
+  /// has BuildFlags::allow_compaction; the copy has the flags of `source` and may be updated if `source` may.
+  virtual AccelerationStructureHandle create_compacted(const AccelerationStructureHandle& source,
+                                                       std::string label) = 0;
+  virtual TextureHandle create_texture(const TextureDesc& desc) = 0;
   virtual ShaderModuleHandle create_shader_module(const ShaderModuleDesc& desc) = 0;
   virtual ComputePipelineHandle create_compute_pipeline(const ComputePipelineDesc& desc) = 0;
+  virtual RayTracingPipelineHandle create_ray_tracing_pipeline(const RayTracingPipelineDesc& desc) = 0;
+  virtual ShaderTableHandle create_shader_table(const ShaderTableDesc& desc) = 0;
   virtual BindGroupHandle create_bind_group(const BindGroupDesc& desc) = 0;
   virtual QueryPoolHandle create_query_pool(const QueryPoolDesc& desc) = 0;
   virtual CommandListHandle create_command_list(std::string label) = 0;

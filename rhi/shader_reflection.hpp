@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "rhi/texture.hpp"
+
 namespace tandem::rhi {
 
 enum class ShaderStage { compute, ray_generation, any_hit, closest_hit, miss, intersection, callable };
@@ -27,7 +29,9 @@ struct ShaderBinding {
   std::uint32_t binding = 0;
   std::uint32_t count = 1;  ///< array length
   BindingKind kind = BindingKind::storage_buffer;
-  bool writable = false;  ///< a storage buffer or image without NonWritable
+  bool writable = false;                              ///< a storage buffer or image without NonWritable
+  TextureDimension dimension = TextureDimension::d2;  ///< of a storage image
+  std::optional<TextureFormat> format;                ///< of a storage image; absent where the shader names none
   std::string name;
 };
 
@@ -46,6 +50,7 @@ struct ShaderReflection {
   /// The SpecId that sets a dimension of the workgroup size, where one does.
   std::array<std::optional<std::uint32_t>, 3> workgroup_size_constant;
   std::uint32_t push_constant_size = 0;  ///< bytes, 0 without a push constant block
+  std::uint32_t shader_record_size = 0;  ///< bytes of the shaderRecordEXT block, 0 without one
   std::vector<ShaderBinding> bindings;
   std::vector<SpecializationConstant> specialization_constants;
 };

@@ -90,10 +90,10 @@ void check_same_shape(std::string_view label, const BottomLevelDesc& created, co
   }
 }
 
-const ShaderBinding* find_binding(const ShaderReflection& reflection, std::uint32_t set, std::uint32_t binding) {
-  const auto found = std::find_if(reflection.bindings.begin(), reflection.bindings.end(),
+const ShaderBinding* find_binding(const PipelineInterface& interface, std::uint32_t set, std::uint32_t binding) {
+  const auto found = std::find_if(interface.bindings.begin(), interface.bindings.end(),
                                   [&](const ShaderBinding& b) { return b.set == set && b.binding == binding; });
-  return found == reflection.bindings.end() ? nullptr : &*found;
+  return found == interface.bindings.end() ? nullptr : &*found;
 }
 
 void check_bound_buffer(const BufferRange& range, BindingKind kind, std::string_view label, const std::string& what,
@@ -113,10 +113,10 @@ void check_bound_buffer(const BufferRange& range, BindingKind kind, std::string_
           what + " has " + to_string(range.resolved_size()) + " bytes, more than the device's " + to_string(limit));
 }
 
-bool same_layout(const ShaderReflection& a, const ShaderReflection& b, std::uint32_t set) {
-  const auto in_set = [set](const ShaderReflection& reflection) {
+bool same_layout(const PipelineInterface& a, const PipelineInterface& b, std::uint32_t set) {
+  const auto in_set = [set](const PipelineInterface& interface) {
     std::vector<ShaderBinding> bindings;
-    std::copy_if(reflection.bindings.begin(), reflection.bindings.end(), std::back_inserter(bindings),
+    std::copy_if(interface.bindings.begin(), interface.bindings.end(), std::back_inserter(bindings),
                  [set](const ShaderBinding& binding) { return binding.set == set; });
     return bindings;
   };
@@ -157,9 +157,6 @@ void check(const BottomLevelDesc& desc, const DeviceInfo& device) {
   for (std::size_t i = 0; i < desc.geometries.size(); ++i) {
     const std::string what = "geometry " + to_string(i);
     if (std::holds_alternative<AabbGeometry>(desc.geometries[i])) {
-      if (!device.capabilities.aabb_geometry)
-        throw Error(ErrorCode::unsupported, desc.label,
-                    what + " holds boxes, which device '" + device.name + "' cannot build");
       continue;
     }
     const auto& triangles = std::get<TriangleGeometry>(desc.geometries[i]);
@@ -213,16 +210,16 @@ void check(const ComputePipelineDesc& desc, const DeviceInfo& device) {
 
 void check(const BindGroupDesc& desc, const DeviceInfo& device) {
   require(desc.pipeline != nullptr, desc.label, "a bind group needs a pipeline");
-  const ShaderReflection& reflection = desc.pipeline->reflection();
+  const PipelineInterface& interface = desc.pipeline->interface();
   std::uint64_t wanted = 0;
-  for (const ShaderBinding& binding : reflection.bindings)
+  for (const ShaderBinding& binding : interface.bindings)
     if (binding.set == desc.set) wanted += binding.count;
   require(wanted > 0, desc.label,
           "the pipeline '" + desc.pipeline->label() + "' uses nothing of set " + to_string(desc.set));
 
   for (std::size_t i = 0; i < desc.entries.size(); ++i) {
     const BindGroupEntry& entry = desc.entries[i];
-    const ShaderBinding* binding = find_binding(reflection, desc.set, entry.binding);
+    const ShaderBinding* binding = find_binding(interface, desc.set, entry.binding);
     const std::string place = "set " + to_string(desc.set) + " binding " + to_string(entry.binding);
     require(binding != nullptr, desc.label, "the pipeline '" + desc.pipeline->label() + "' has no " + place);
     const std::string what = place + " ('" + binding->name + "')";
@@ -255,9 +252,9 @@ void check(const QueryPoolDesc& desc) {
 void check(const DispatchDesc& desc, const DeviceInfo& device) {
   require(desc.pipeline != nullptr, "", "a dispatch needs a pipeline");
   const std::string& label = desc.pipeline->label();
-  const ShaderReflection& reflection = desc.pipeline->reflection();
-  require(desc.push_constants.size() == reflection.push_constant_size, label,
-          "the shader has " + to_string(reflection.push_constant_size) +
+  const PipelineInterface& interface = desc.pipeline->interface();
+  require(desc.push_constants.size() == interface.push_constant_size, label,
+          "the shader has " + to_string(interface.push_constant_size) +
               " bytes of push constants, but the dispatch gives " + to_string(desc.push_constants.size()));
   for (std::size_t i = 0; i < 3; ++i)
     require(desc.workgroup_count[i] <= device.limits.max_workgroup_count[i], label,
@@ -269,11 +266,11 @@ void check(const DispatchDesc& desc, const DeviceInfo& device) {
     const std::uint32_t set = group->desc().set;
     require(std::find(given.begin(), given.end(), set) == given.end(), label,
             "set " + to_string(set) + " is given twice");
-    require(same_layout(group->desc().pipeline->reflection(), reflection, set), label,
+    require(same_layout(group->desc().pipeline->interface(), interface, set), label,
             "bind group '" + group->label() + "' was made for other bindings of set " + to_string(set));
     given.push_back(set);
   }
-  for (const ShaderBinding& binding : reflection.bindings)
+  for (const ShaderBinding& binding : interface.bindings)
     require(std::find(given.begin(), given.end(), binding.set) != given.end(), label,
             "no bind group is given for set " + to_string(binding.set));
 }

@@ -13,9 +13,13 @@ void check(const BufferDesc& desc);
 void check(const BottomLevelDesc& desc, const DeviceInfo& device);
 void check(const TopLevelDesc& desc, const DeviceInfo& device);
 void check(const ComputePipelineDesc& desc, const DeviceInfo& device);
+void check(const RayTracingPipelineDesc& desc, const DeviceInfo& device);
+void check(const ShaderTableDesc& desc, const DeviceInfo& device);
+void check(const TextureDesc& desc, const DeviceInfo& device);
 void check(const BindGroupDesc& desc, const DeviceInfo& device);
 void check(const QueryPoolDesc& desc);
 void check(const DispatchDesc& desc, const DeviceInfo& device);
+void check(const TraceRaysDesc& desc, const DeviceInfo& device);
 /// Commands of a list: `list` is named in the error.
 void check_upload(const CommandList& list, const BufferHandle& buffer, std::uint64_t offset, std::uint64_t size);
 void check_copy(const CommandList& list, const BufferRange& source, const BufferRange& destination);
@@ -24,6 +28,14 @@ void check_build(const CommandList& list, const AccelerationStructureHandle& str
                  const BottomLevelDesc& created_from, const BottomLevelDesc& desc);
 void check_build(const CommandList& list, const AccelerationStructureHandle& structure,
                  const TopLevelDesc& created_from, const TopLevelDesc& desc);
+/// As check_build, with BuildFlags::allow_update and, of a top level, the same count.
+void check_update(const CommandList& list, const AccelerationStructureHandle& structure,
+                  const BottomLevelDesc& created_from, const BottomLevelDesc& desc);
+void check_update(const CommandList& list, const AccelerationStructureHandle& structure,
+                  const TopLevelDesc& created_from, const TopLevelDesc& desc);
+void check_compaction(const AccelerationStructureHandle& source, BuildFlags flags, const std::string& label);
+/// Of copy_to_texture and copy_from_texture: `range` is the buffer's side.
+void check_texture_copy(const CommandList& list, const BufferRange& range, const TextureHandle& texture);
 void check_timestamp(const CommandList& list, const QueryPoolHandle& pool, std::uint32_t index);
 void check_download(const BufferHandle& buffer, std::uint64_t offset, std::uint64_t size);
 

@@ -25,6 +25,7 @@ TriangleInput input_of(const rhi::TriangleGeometry& triangles) {
   TriangleInput input{.vertices = memory(triangles.vertices),
                       .vertex_count = triangles.vertex_count,
                       .vertex_stride = triangles.vertex_stride,
+                      .vertex_format = triangles.vertex_format,
                       .indices = memory(triangles.indices),
                       .index_format = triangles.index_format,
                       .triangle_count = triangles.triangle_count,
@@ -58,7 +59,7 @@ BottomLevelStructure::BottomLevelStructure(DeviceStateHandle device, const rhi::
 BottomLevelStructure::~BottomLevelStructure() { device_->bottom_levels.remove(address_); }
 
 void BottomLevelStructure::build(const rhi::BottomLevelDesc& desc) {
-  std::vector<TriangleInput> inputs;
+  std::vector<GeometryInput> inputs;
   for (const rhi::Geometry& geometry : desc.geometries)
     inputs.push_back(input_of(std::get<rhi::TriangleGeometry>(geometry)));
   device_->bottom_levels.set_built(address_, BottomLevel::build(device_->embree, inputs, label()));

@@ -16,6 +16,7 @@ class BottomLevelStructure final : public rhi::AccelerationStructure {
   ~BottomLevelStructure() override;
 
   std::uint64_t device_address() const override { return address_; }
+  rhi::AccelerationStructureSizes sizes() const override { return {}; }
 
   const DeviceState& device() const noexcept { return *device_; }
   /// The desc it was created from, for its counts and formats: only buffers of transforms are kept.
@@ -35,6 +36,7 @@ class TopLevelStructure final : public rhi::AccelerationStructure {
   TopLevelStructure(DeviceStateHandle device, const rhi::TopLevelDesc& desc);
 
   std::uint64_t device_address() const override;
+  rhi::AccelerationStructureSizes sizes() const override { return {}; }
 
   const DeviceState& device() const noexcept { return *device_; }
   /// The desc it was created from, without its buffer.

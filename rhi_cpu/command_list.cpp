@@ -107,4 +107,24 @@ void CommandList::execute() {
   for (const std::function<void()>& command : commands) command();
 }
 
+void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle&, const rhi::BottomLevelDesc&) {
+  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
+}
+
+void CommandList::update_top_level(const rhi::AccelerationStructureHandle&, const rhi::TopLevelDesc&) {
+  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
+}
+
+void CommandList::copy_to_texture(const rhi::BufferRange&, const rhi::TextureHandle&) {
+  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
+}
+
+void CommandList::copy_from_texture(const rhi::TextureHandle&, const rhi::BufferRange&) {
+  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
+}
+
+void CommandList::trace_rays(const rhi::TraceRaysDesc&) {
+  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "ray tracing pipelines are not supported yet");
+}
+
 }  // namespace tandem::cpu

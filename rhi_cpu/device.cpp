@@ -51,6 +51,23 @@ class Device final : public rhi::Device {
     return std::make_shared<ComputePipeline>(state_, desc);
   }
 
+  rhi::AccelerationStructureHandle create_compacted(const rhi::AccelerationStructureHandle&,
+                                                    std::string label) override {
+    throw rhi::Error(rhi::ErrorCode::unsupported, label, "compaction is not supported yet");
+  }
+
+  rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
+    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "textures are not supported yet");
+  }
+
+  rhi::RayTracingPipelineHandle create_ray_tracing_pipeline(const rhi::RayTracingPipelineDesc& desc) override {
+    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "ray tracing pipelines are not supported yet");
+  }
+
+  rhi::ShaderTableHandle create_shader_table(const rhi::ShaderTableDesc& desc) override {
+    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "ray tracing pipelines are not supported yet");
+  }
+
   rhi::BindGroupHandle create_bind_group(const rhi::BindGroupDesc& desc) override {
     rhi::validation::check(desc, info());
     own<ComputePipeline>(desc.pipeline, *state_, desc.label);
@@ -128,7 +145,6 @@ rhi::DeviceInfo device_info() {
           .capabilities = {.ray_query = true,
                            .ray_tracing_pipeline = false,
                            .position_fetch = false,
-                           .aabb_geometry = false,
                            .scalar_block_layout = true,
                            .shader_int64 = true,
                            .shader_float64 = true,

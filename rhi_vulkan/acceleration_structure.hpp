@@ -28,6 +28,9 @@ class AccelerationStructure final : public rhi::AccelerationStructure {
   AccelerationStructure(ContextHandle context, const rhi::TopLevelDesc& desc);
 
   std::uint64_t device_address() const override { return address_; }
+  rhi::AccelerationStructureSizes sizes() const override {
+    return {.structure = 0, .build_scratch = scratch_size_, .update_scratch = 0};
+  }
   const ContextHandle& context() const noexcept { return context_; }
   vk::AccelerationStructureKHR handle() const { return *structure_; }
   std::uint64_t scratch_size() const noexcept { return scratch_size_; }

@@ -10,9 +10,9 @@
 namespace tandem::vulkan {
 namespace {
 
-DescriptorCounts count_descriptors(const rhi::ShaderReflection& reflection, std::uint32_t set) {
+DescriptorCounts count_descriptors(const rhi::PipelineInterface& interface, std::uint32_t set) {
   DescriptorCounts counts;
-  for (const rhi::ShaderBinding& binding : reflection.bindings) {
+  for (const rhi::ShaderBinding& binding : interface.bindings) {
     if (binding.set != set) continue;
     if (binding.kind == rhi::BindingKind::uniform_buffer) counts.uniform_buffers += binding.count;
     if (binding.kind == rhi::BindingKind::storage_buffer) counts.storage_buffers += binding.count;
@@ -21,8 +21,8 @@ DescriptorCounts count_descriptors(const rhi::ShaderReflection& reflection, std:
   return counts;
 }
 
-rhi::BindingKind kind_of(const rhi::ShaderReflection& reflection, std::uint32_t set, std::uint32_t binding) {
-  for (const rhi::ShaderBinding& candidate : reflection.bindings)
+rhi::BindingKind kind_of(const rhi::PipelineInterface& interface, std::uint32_t set, std::uint32_t binding) {
+  for (const rhi::ShaderBinding& candidate : interface.bindings)
     if (candidate.set == set && candidate.binding == binding) return candidate.kind;
   throw rhi::Error(rhi::ErrorCode::invalid_argument, "", "no binding " + std::to_string(binding));
 }
@@ -34,7 +34,7 @@ BindGroup::BindGroup(ContextHandle context, const rhi::BindGroupDesc& desc)
   const auto& pipeline = own<ComputePipeline>(desc.pipeline, context_, desc.label, "pipeline");
   translating_errors(desc.label, "create the bind group", [&] {
     set_.emplace(context_->descriptors, pipeline.set_layout(desc.set),
-                 count_descriptors(pipeline.reflection(), desc.set));
+                 count_descriptors(pipeline.interface(), desc.set));
     context_->name(set_->handle(), desc.label);
   });
   write();
@@ -54,7 +54,7 @@ void BindGroup::write() const {
         .dstBinding = entry.binding,
         .dstArrayElement = entry.array_element,
         .descriptorCount = 1,
-        .descriptorType = descriptor_type(kind_of(desc().pipeline->reflection(), desc().set, entry.binding))};
+        .descriptorType = descriptor_type(kind_of(desc().pipeline->interface(), desc().set, entry.binding))};
     if (const auto* range = std::get_if<rhi::BufferRange>(&entry.resource)) {
       buffers[i] = vk::DescriptorBufferInfo{.buffer = own<Buffer>(range->buffer, context_, label(), "buffer").handle(),
                                             .offset = range->offset,

@@ -23,7 +23,13 @@ class CommandList final : public rhi::CommandList {
   void fill(const rhi::BufferRange& range, std::uint32_t value) override;
   void build_bottom_level(const rhi::AccelerationStructureHandle& structure, const rhi::BottomLevelDesc& desc) override;
   void build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) override;
+  void update_bottom_level(const rhi::AccelerationStructureHandle& structure,
+                           const rhi::BottomLevelDesc& desc) override;
+  void update_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) override;
+  void copy_to_texture(const rhi::BufferRange& source, const rhi::TextureHandle& destination) override;
+  void copy_from_texture(const rhi::TextureHandle& source, const rhi::BufferRange& destination) override;
   void dispatch(const rhi::DispatchDesc& desc) override;
+  void trace_rays(const rhi::TraceRaysDesc& desc) override;
   void write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) override;
 
   const ContextHandle& context() const noexcept { return context_; }

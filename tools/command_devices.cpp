@@ -19,7 +19,11 @@ std::string capability_names(const rhi::Capabilities& capabilities) {
   add(capabilities.ray_query, "ray query");
   add(capabilities.ray_tracing_pipeline, "ray tracing pipeline");
   add(capabilities.position_fetch, "position fetch");
-  add(capabilities.aabb_geometry, "AABB geometry");
+  add(capabilities.trace_rays_indirect, "indirect trace");
+  add(capabilities.primitive_culling, "primitive culling");
+  add(capabilities.null_acceleration_structure, "null structures");
+  add(capabilities.buffer_references, "buffer references");
+  add(capabilities.non_uniform_indexing, "non-uniform indexing");
   add(capabilities.scalar_block_layout, "scalar layout");
   add(capabilities.shader_int64, "int64");
   add(capabilities.shader_float64, "float64");

@@ -8,12 +8,21 @@
 namespace tandem::kernel {
 
 /// Raised whenever something in kernel/ changes that a compiled kernel depends on.
-inline constexpr std::uint32_t abi_version = 1;
+inline constexpr std::uint32_t abi_version = 2;
 
-/// One element of one binding. A buffer: its bytes. An acceleration structure: `data` points at a kernel::TopLevel.
+/// One element of one binding. A buffer: its bytes. An acceleration structure: `data` points at a kernel::TopLevel, or
+/// is null for one that no ray meets. A storage image: `data` points at a kernel::Image.
 struct Resource {
   std::byte* data = nullptr;
-  std::uint64_t size = 0;  ///< bytes bound; 0 for an acceleration structure
+  std::uint64_t size = 0;  ///< bytes bound; 0 for an acceleration structure or image
+};
+
+/// Texels of a storage image, tightly packed: x fastest, then y, then z or the layer. How one is encoded the shader
+/// knows (the format of the texture is checked against it when it is bound).
+struct Image {
+  std::byte* texels = nullptr;
+  std::uint32_t size[3] = {1, 1, 1};
+  std::uint32_t format = 0;  ///< rhi::TextureFormat, for shaders that name none
 };
 
 /// One run of a kernel.
@@ -23,7 +32,12 @@ struct Dispatch {
   std::uint32_t workgroup_count[3] = {1, 1, 1};
 };
 
-enum class ResourceKind : std::uint32_t { uniform_buffer, storage_buffer, acceleration_structure };
+enum class ResourceKind : std::uint32_t { uniform_buffer, storage_buffer, acceleration_structure, storage_image };
+
+/// rhi::ShaderStage.
+enum class Stage : std::uint32_t { compute, ray_generation, any_hit, closest_hit, miss, intersection, callable };
+
+struct ShaderCall;
 
 /// Where a kernel expects a binding: elements [first_resource, first_resource + count) of Dispatch::resources.
 struct BindingSlot {
@@ -42,8 +56,13 @@ struct KernelInfo {
   std::uint32_t resource_count;
   std::uint32_t binding_count;
   const BindingSlot* bindings;
-  /// Runs workgroups [first, end) of the dispatch, counted with x fastest, then y, then z. Thread-safe.
+  /// Compute: runs workgroups [first, end) of the dispatch, counted with x fastest, then y, then z. Thread-safe.
   void (*run)(const Dispatch& dispatch, std::uint64_t first, std::uint64_t end);
+  Stage stage = Stage::compute;
+  /// A ray tracing stage: runs the shader once (kernel/shader_call.hpp). Thread-safe.
+  void (*call)(ShaderCall& call) = nullptr;
+  std::uint32_t shader_record_size = 0;  ///< bytes of the shaderRecordEXT block, 0 without one
+  std::uint32_t payload_size = 0;  ///< bytes of the incoming payload or callable data as C++ has it, 0 without one
 };
 
 /// The one symbol that a kernel library exports.

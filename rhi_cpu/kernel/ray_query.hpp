@@ -43,14 +43,16 @@ struct rayQueryEXT {
                    .geometry_index = 0,
                    .primitive_index = 0,
                    .front_face = false,
-                   .opaque = false};
+                   .opaque = false,
+                   .is_box = false};
   Hit candidate = {.t = 0,
                    .barycentrics = {0, 0},
                    .instance_index = no_instance,
                    .geometry_index = 0,
                    .primitive_index = 0,
                    .front_face = false,
-                   .opaque = false};
+                   .opaque = false,
+                   .is_box = false};
   RayQueryState state = RayQueryState::complete;
   bool has_committed = false;
   /// The committed hit is known to exist, but not yet which it is: most rays that stop at the first hit only ask
@@ -110,7 +112,7 @@ TANDEM_RAY_QUERY_INLINE bool rayQueryProceedEXT(rayQueryEXT& query) {
 
   const Hit previous = query.candidate;
   const bool found =
-      scene.functions->next_hit(scene, ray, state == RayQueryState::initialized ? nullptr : &previous, hit);
+      scene.functions->next_hits(scene, ray, state == RayQueryState::initialized ? nullptr : &previous, &hit, 1) == 1;
   if (!found) return false;
   if (hit.opaque) {
     query.committed = hit;

@@ -43,15 +43,31 @@ struct RayVectors {
 };
 static_assert(sizeof(RayVectors) == sizeof(Ray));
 
-/// A triangle that a ray meets.
+/// A triangle or a box that a ray meets.
 struct Hit {
-  float t;
-  float barycentrics[2];         ///< weights of the second and third vertex
+  float t;                       ///< of a box: where the ray enters it, or t_min where it begins inside
+  float barycentrics[2];         ///< of a triangle: weights of the second and third vertex
   std::uint32_t instance_index;  ///< position in the top level's instance buffer: gl_InstanceID
   std::uint32_t geometry_index;
   std::uint32_t primitive_index;
-  bool front_face;
-  bool opaque;  ///< commits without the shader's confirmation; `closest` and `occluded` treat every hit so
+  bool front_face;  ///< of a triangle
+  bool opaque;      ///< a triangle commits without the shader's confirmation; `closest` and `occluded` treat every so
+  bool is_box;      ///< a candidate even when opaque: the shader finds the hit, if there is one
+};
+
+/// What becomes of a candidate.
+enum class CandidateDecision : std::uint32_t { ignore, commit, commit_and_terminate };
+
+/// Decides about candidates while a ray is traced: the any-hit and intersection shaders of a pipeline. It is called for
+/// candidates in any order, at least once for every one that is nearer than the hit which is committed in the end, and
+/// at most once for each.
+struct CandidateVisitor {
+  void* context;
+  /// A triangle that is not opaque, with t_min < t < t_max, nearer than what is committed.
+  CandidateDecision (*triangle)(void* context, const Hit& candidate);
+  /// A box that the ray meets somewhere in [t_min, t_max], opaque or not; t_max is that of the hit committed so far. To
+  /// commit, it sets candidate.t to the hit's, in [t_min, t_max].
+  CandidateDecision (*box)(void* context, Hit& candidate, float t_max);
 };
 
 /// What the getters of a hit need of its instance.
@@ -64,15 +80,22 @@ struct Instance {
 
 struct TopLevel;
 
-/// All of them leave out what the ray's mask and flags cull, expect a ray with t_min < t_max, and are thread-safe.
+/// All of them leave out what the ray's mask and flags cull (among them ray_flag_skip_triangles and
+/// ray_flag_skip_aabbs), expect a ray with t_min < t_max, and are thread-safe.
 struct TraceFunctions {
-  /// The closest hit, opaque or not; it counts as opaque.
+  /// The closest triangle, opaque or not; it counts as opaque. Boxes are not looked at.
   bool (*closest)(const TopLevel& scene, const Ray& ray, Hit& hit);
-  /// Whether there is any hit, opaque or not.
+  /// Whether there is any triangle, opaque or not. Boxes are not looked at.
   bool (*occluded)(const TopLevel& scene, const Ray& ray);
-  /// The first hit after `previous`, or the first of all when it is null, in the total order (t, instance, geometry,
-  /// primitive), opaque or not. Repeated, it enumerates every hit of the ray exactly once, also those of equal t.
-  bool (*next_hit)(const TopLevel& scene, const Ray& ray, const Hit* previous, Hit& hit);
+  /// The first hits, at most `capacity`, after `previous`, or the first of all when it is null, in the total order (t,
+  /// instance, geometry, primitive), opaque or not, triangles and boxes. Fewer than `capacity`: there are no more after
+  /// them. Repeated with the last one as `previous`, it enumerates every triangle and box that the ray meets exactly
+  /// once, also those of equal t.
+  std::uint32_t (*next_hits)(const TopLevel& scene, const Ray& ray, const Hit* previous, Hit* hits,
+                             std::uint32_t capacity);
+  /// The closest of the opaque triangles and of what `visitor` commits; with ray_flag_terminate_on_first_hit any of
+  /// them. False when there is none.
+  bool (*visit)(const TopLevel& scene, const Ray& ray, const CandidateVisitor& visitor, Hit& committed);
 };
 
 /// A built top level as a kernel sees it; the backend derives its own from it. An acceleration structure's Resource
@@ -81,7 +104,8 @@ struct TopLevel {
   const TraceFunctions* functions;
   const Instance* instances;
   std::uint32_t instance_count;
-  bool all_opaque;  ///< no hit is a candidate unless the ray has ray_flag_no_opaque
+  bool all_opaque;  ///< no triangle is a candidate unless the ray has ray_flag_no_opaque
+  bool has_boxes;   ///< some instance holds boxes, which are always candidates
 };
 
 }  // namespace tandem::kernel

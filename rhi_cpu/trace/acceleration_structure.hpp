@@ -12,34 +12,20 @@
 #include "rhi/acceleration_structure.hpp"
 #include "rhi_cpu/kernel/trace.hpp"
 #include "rhi_cpu/trace/embree_device.hpp"
+#include "rhi_cpu/trace/geometry_input.hpp"
 
 /// Acceleration structures over Embree, built from host memory. They copy what they need and keep no pointer to it.
 namespace tandem::cpu {
 
-/// Triangles of one geometry in host memory; see rhi::TriangleGeometry. A triangle with a vertex that is not finite, or
-/// of no area, is inactive: it keeps its index and is never hit. So is one with a coordinate beyond 1.8e18, Embree's
-/// range.
-struct TriangleInput {
-  std::span<const std::byte> vertices = {};  ///< vertex_count positions of three floats, `vertex_stride` bytes apart
-  std::uint32_t vertex_count = 0;
-  std::uint32_t vertex_stride = 12;
-  /// Tightly packed; empty with IndexFormat::none: consecutive triples of vertices.
-  std::span<const std::byte> indices = {};
-  rhi::IndexFormat index_format = rhi::IndexFormat::none;
-  std::uint32_t triangle_count = 0;
-  std::optional<std::array<float, 12>> transform = {};  ///< row-major 3x4, applied to the positions now
-  rhi::GeometryFlags flags = rhi::GeometryFlags::opaque;
-};
-
 struct BottomLevelScene;
 struct TopLevelScene;
 
-/// Geometries that instances refer to.
+/// Geometries that instances refer to. A triangle with a coordinate beyond 1.8e18, Embree's range, is never hit.
 class BottomLevel {
  public:
   /// Throws rhi::Error, in the name of `label`, for spans shorter than the counts say, for an index that is not below
   /// vertex_count, and when memory runs out.
-  static BottomLevel build(const EmbreeDevice& device, std::span<const TriangleInput> geometries,
+  static BottomLevel build(const EmbreeDevice& device, std::span<const GeometryInput> geometries,
                            std::string_view label);
 
   const std::shared_ptr<const BottomLevelScene>& scene() const noexcept { return scene_; }

@@ -156,6 +156,7 @@ TopLevel TopLevel::build(const EmbreeDevice& device, std::span<const rhi::Instan
     rtcCommitScene(result->scene);
     device.check(label);
   }
+  result->has_boxes = false;
   result->functions = &embree_trace_functions;
   result->instances = result->instance_storage.data();
   result->instance_count = static_cast<std::uint32_t>(instances.size());

@@ -116,7 +116,7 @@ struct FilterContext : EmbreeContext {
   const Ray* ray;
 };
 
-/// What next_hit's filter finds in its arguments.
+/// What next_hits' filter finds in its arguments.
 struct OrderedContext : FilterContext {
   const Hit* previous;
   float slack_at_origin;  ///< see rounding_slack
@@ -156,7 +156,8 @@ Hit filtered_hit(const FilterContext& context, const RTCFilterFunctionNArguments
           .geometry_index = geometry_index,
           .primitive_index = RTCHitN_primID(arguments.hit, 1, 0),
           .front_face = is_front_face(instance, normal, direction),
-          .opaque = is_opaque(instance, geometry_index, context.ray->flags)};
+          .opaque = is_opaque(instance, geometry_index, context.ray->flags),
+          .is_box = false};
 }
 
 void reject_culled(const RTCFilterFunctionNArguments* arguments) {
@@ -216,6 +217,7 @@ bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
   hit.front_face =
       is_front_face(scene.traits[hit.instance_index], {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}, direction);
   hit.opaque = true;
+  hit.is_box = false;
   return true;
 }
 
@@ -236,9 +238,10 @@ bool occluded(const kernel::TopLevel& top_level, const Ray& ray) {
   return query.tfar < 0;
 }
 
-bool next_hit(const kernel::TopLevel& top_level, const Ray& ray, const Hit* previous, Hit& hit) {
+std::uint32_t next_hits(const kernel::TopLevel& top_level, const Ray& ray, const Hit* previous, Hit* hits,
+                        std::uint32_t capacity) {
   const TopLevelScene& scene = scene_of(top_level);
-  if (!is_traceable(scene, ray)) return false;
+  if (capacity == 0 || !is_traceable(scene, ray)) return 0;
   // Embree passes by boxes that lie behind the nearest hit so far or before tnear. A triangle whose t is rounded to a
   // value outside of its box would be lost that way, so the search reaches a little farther at both ends, and the
   // filter decides exactly.
@@ -256,13 +259,13 @@ bool next_hit(const kernel::TopLevel& top_level, const Ray& ray, const Hit* prev
   set_ray(ray, t_first, context.t_last, query.ray);
   clear_hit(query.hit);
   intersect(scene.scene, query, context, &keep_first_after_previous);
-  if (context.found) hit = context.best;
-  return context.found;
+  if (context.found) hits[0] = context.best;
+  return context.found ? 1 : 0;
 }
 
 }  // namespace
 
 const kernel::TraceFunctions embree_trace_functions = {
-    .closest = &closest, .occluded = &occluded, .next_hit = &next_hit};
+    .closest = &closest, .occluded = &occluded, .next_hits = &next_hits, .visit = nullptr};
 
 }  // namespace tandem::cpu

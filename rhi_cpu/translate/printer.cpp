@@ -277,7 +277,8 @@ void Printer::print_info() {
   const bool any = !reflection_.bindings.empty();
   if (any) statement("constexpr k::BindingSlot binding_slots[] = {\n", slots, "};");
   statement(
-      fmt::format("constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, run}};\n",
+      fmt::format("constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, run, "
+                  "k::Stage::compute, nullptr, 0, 0}};\n",
                   workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
                   reflection_.bindings.size(), any ? "binding_slots" : "nullptr"));
   statement("}  // namespace");

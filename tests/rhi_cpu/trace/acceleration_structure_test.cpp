@@ -94,7 +94,8 @@ TEST_CASE("a geometry transform moves the vertices and with them the winding") {
                                  .vertex_count = 3,
                                  .triangle_count = 1,
                                  .transform = swap_xy};
-  const cpu::BottomLevel bottom_level = cpu::BottomLevel::build(device, {&input, 1}, "swapped");
+  const cpu::BottomLevel bottom_level =
+      cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, "swapped");
   const rhi::InstanceDesc instance = instance_of(0);
   const cpu::TopLevel top_level = cpu::TopLevel::build(
       device, {&instance, 1}, [&](std::uint64_t) { return &bottom_level; }, "swapped");
@@ -165,7 +166,7 @@ TEST_CASE("index formats, strides and index gaps") {
     input.index_format = rhi::IndexFormat::uint32;
   }
   // Geometry 0 is empty: it keeps its place.
-  const cpu::TriangleInput inputs[] = {{}, input};
+  const cpu::GeometryInput inputs[] = {cpu::TriangleInput{}, input};
   const cpu::BottomLevel bottom_level = cpu::BottomLevel::build(device, inputs, "indexed");
   const rhi::InstanceDesc instance = instance_of(0);
   const cpu::TopLevel top_level = cpu::TopLevel::build(
@@ -305,7 +306,8 @@ TEST_CASE("bad input is one sentence that names the structure and what is wrong"
   const auto error = [&](const auto& change) {
     cpu::TriangleInput input = good;
     change(input);
-    const std::string text = error_of([&] { cpu::BottomLevel::build(device, {&input, 1}, "bunny"); });
+    const std::string text =
+        error_of([&] { cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, "bunny"); });
     CHECK(contains(text, "bunny"));
     return text;
   };

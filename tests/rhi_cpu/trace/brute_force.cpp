@@ -136,13 +136,14 @@ rhi::InstanceDesc instance_of(std::size_t index) {
 BuiltSoup build(const cpu::EmbreeDevice& device, const Soup& soup) {
   std::vector<cpu::BottomLevel> bottom_levels;
   for (const std::vector<SoupGeometry>& geometries : soup.bottom_levels) {
-    std::vector<cpu::TriangleInput> inputs;
+    std::vector<cpu::GeometryInput> inputs;
     for (const SoupGeometry& geometry : geometries) {
       const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
-      inputs.push_back({.vertices = std::as_bytes(std::span(geometry.triangles)),
-                        .vertex_count = 3 * count,
-                        .triangle_count = count,
-                        .flags = geometry.opaque ? rhi::GeometryFlags::opaque : rhi::GeometryFlags::none});
+      inputs.push_back(
+          cpu::TriangleInput{.vertices = std::as_bytes(std::span(geometry.triangles)),
+                             .vertex_count = 3 * count,
+                             .triangle_count = count,
+                             .flags = geometry.opaque ? rhi::GeometryFlags::opaque : rhi::GeometryFlags::none});
     }
     bottom_levels.push_back(cpu::BottomLevel::build(device, inputs, "soup"));
   }

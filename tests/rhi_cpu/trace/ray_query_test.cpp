@@ -33,6 +33,7 @@ struct ScriptedLevel : TopLevel {
     instances = scripted_instances.data();
     instance_count = static_cast<std::uint32_t>(scripted_instances.size());
     all_opaque = true;
+    has_boxes = false;
     for (const Hit& hit : hits) all_opaque = all_opaque && hit.opaque;
   }
   ScriptedLevel(const ScriptedLevel&) = delete;
@@ -54,17 +55,17 @@ struct ScriptedLevel : TopLevel {
     of(level).last_ray = ray;
     return !of(level).hits.empty();
   }
-  static bool next_hit(const TopLevel& level, const Ray& ray, const Hit* previous, Hit& hit) {
+  static std::uint32_t next_hits(const TopLevel& level, const Ray& ray, const Hit* previous, Hit* hits, std::uint32_t) {
     ++of(level).next_calls;
     of(level).last_ray = ray;
     for (const Hit& candidate : of(level).hits) {
       if (previous != nullptr && candidate.t <= previous->t) continue;
-      hit = candidate;
-      return true;
+      hits[0] = candidate;
+      return 1;
     }
-    return false;
+    return 0;
   }
-  static constexpr TraceFunctions scripted_functions = {&closest, &occluded, &next_hit};
+  static constexpr TraceFunctions scripted_functions = {&closest, &occluded, &next_hits, nullptr};
 };
 
 Hit triangle(float t, std::uint32_t primitive, bool opaque) {
@@ -74,7 +75,8 @@ Hit triangle(float t, std::uint32_t primitive, bool opaque) {
           .geometry_index = 3,
           .primitive_index = primitive,
           .front_face = true,
-          .opaque = opaque};
+          .opaque = opaque,
+          .is_box = false};
 }
 
 void initialize(rayQueryEXT& query, const ScriptedLevel& level, uint flags = 0) {

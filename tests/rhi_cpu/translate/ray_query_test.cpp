@@ -24,23 +24,25 @@ bool closest(const kernel::TopLevel&, const kernel::Ray& ray, kernel::Hit& hit) 
          .geometry_index = 5,
          .primitive_index = 9,
          .front_face = true,
-         .opaque = true};
+         .opaque = true,
+         .is_box = false};
   return true;
 }
 bool occluded(const kernel::TopLevel& scene, const kernel::Ray& ray) {
   kernel::Hit hit;
   return closest(scene, ray, hit);
 }
-bool next(const kernel::TopLevel& scene, const kernel::Ray& ray, const kernel::Hit* previous, kernel::Hit& hit) {
-  return previous == nullptr && closest(scene, ray, hit);
+std::uint32_t next(const kernel::TopLevel& scene, const kernel::Ray& ray, const kernel::Hit* previous,
+                   kernel::Hit* hits, std::uint32_t) {
+  return previous == nullptr && closest(scene, ray, hits[0]) ? 1 : 0;
 }
 
-constexpr kernel::TraceFunctions functions = {closest, occluded, next};
+constexpr kernel::TraceFunctions functions = {closest, occluded, next, nullptr};
 constexpr kernel::Instance instances[2] = {
     {}, {{{1, 0, 0, 10}, {0, 1, 0, 20}, {0, 0, 1, 30}}, {{1, 0, 0, -10}, {0, 1, 0, -20}, {0, 0, 1, -30}}, 42, 77}};
 
 TEST_CASE("queries and structures go through variables, arrays and parameters") {
-  const kernel::TopLevel scenes[2] = {{&functions, instances, 2, true}, {&functions, instances, 2, true}};
+  const kernel::TopLevel scenes[2] = {{&functions, instances, 2, true, false}, {&functions, instances, 2, true, false}};
   const Kernel kernel(R"(
     #extension GL_EXT_ray_query : require
     layout(local_size_x = 1) in;

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rhi/pipeline.hpp"
+
+namespace tandem::rhi {
+
+/// What happens where a ray meets a geometry. Every member may be absent: without `closest_hit` nothing runs for the
+/// closest hit, without `any_hit` every candidate is accepted. With `intersection` the group is for boxes, without for
+/// triangles; a geometry whose hit record names a group for the other kind is not hit.
+struct HitGroup {
+  ShaderModuleHandle closest_hit;
+  ShaderModuleHandle any_hit;
+  ShaderModuleHandle intersection;
+};
+
+/// The shaders of a pipeline. A shader record names one by its position in the list of its kind.
+struct RayTracingPipelineDesc {
+  std::vector<ShaderModuleHandle> ray_generation;  ///< at least one
+  std::vector<ShaderModuleHandle> miss;
+  std::vector<HitGroup> hit_groups;
+  std::vector<ShaderModuleHandle> callable;
+  /// Rays in flight at once: 1 when only the ray generation shader traces; at most Limits::max_ray_recursion_depth.
+  /// 0 when nothing traces.
+  std::uint32_t max_recursion_depth = 1;
+  /// Given to every shader that declares the constant; each id must be declared by one.
+  std::vector<SpecializationValue> specialization;
+  std::string label;
+};
+
+/// Every module that the desc names, each once, in the order ray generation, miss, hit groups, callable.
+std::vector<ShaderModuleHandle> shaders_of(const RayTracingPipelineDesc& desc);
+
+/// Ray tracing shaders ready to run through a ShaderTable. Vulkan: VK_KHR_ray_tracing_pipeline.
+class RayTracingPipeline : public Pipeline {
+ public:
+  const RayTracingPipelineDesc& desc() const noexcept { return desc_; }
+
+ protected:
+  explicit RayTracingPipeline(RayTracingPipelineDesc desc)
+      : Pipeline(Kind::ray_tracing, desc.label, combined_interface(shaders_of(desc), desc.label)),
+        desc_(std::move(desc)) {}
+
+ private:
+  RayTracingPipelineDesc desc_;
+};
+
+using RayTracingPipelineHandle = std::shared_ptr<RayTracingPipeline>;
+
+}  // namespace tandem::rhi
