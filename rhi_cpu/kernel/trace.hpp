@@ -68,6 +68,9 @@ struct CandidateVisitor {
   /// A box that the ray meets somewhere in [t_min, t_max], opaque or not; t_max is that of the hit committed so far. To
   /// commit, it sets candidate.t to the hit's, in [t_min, t_max].
   CandidateDecision (*box)(void* context, Hit& candidate, float t_max);
+  /// `triangle` is asked about opaque triangles too, instead of their being committed: their hit group may be one for
+  /// boxes. Hit::opaque says which they are.
+  bool visits_opaque_triangles = false;
 };
 
 /// What the getters of a hit need of its instance.
