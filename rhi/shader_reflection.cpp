@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
+#include <string>
 #include <tuple>
 
 #include <spirv_cross/spirv_cross.hpp>
@@ -34,6 +36,60 @@ ShaderStage stage_of(spv::ExecutionModel model, std::string_view label) {
       throw Error(ErrorCode::unsupported, label,
                   "the SPIR-V entry point has execution model " + std::to_string(model) +
                       ", which is neither compute nor a ray tracing stage");
+  }
+}
+
+TextureDimension dimension_of(const spirv_cross::SPIRType::ImageType& image, const std::string& name,
+                              std::string_view label) {
+  const bool plain = !image.ms && !image.arrayed;
+  if (image.dim == spv::Dim1D && plain) return TextureDimension::d1;
+  if (image.dim == spv::Dim2D && plain) return TextureDimension::d2;
+  if (image.dim == spv::Dim3D && plain) return TextureDimension::d3;
+  if (image.dim == spv::Dim2D && !image.ms) return TextureDimension::d2_array;
+  throw Error(ErrorCode::unsupported, label,
+              "the storage image " + name + " is neither image1D, image2D, image3D nor image2DArray");
+}
+
+std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::string& name, std::string_view label) {
+  switch (format) {
+    case spv::ImageFormatUnknown:
+      return std::nullopt;
+    case spv::ImageFormatRgba8:
+      return TextureFormat::rgba8_unorm;
+    case spv::ImageFormatRgba8Snorm:
+      return TextureFormat::rgba8_snorm;
+    case spv::ImageFormatRgba8ui:
+      return TextureFormat::rgba8_uint;
+    case spv::ImageFormatRgba8i:
+      return TextureFormat::rgba8_sint;
+    case spv::ImageFormatRgba16ui:
+      return TextureFormat::rgba16_uint;
+    case spv::ImageFormatRgba16i:
+      return TextureFormat::rgba16_sint;
+    case spv::ImageFormatRgba16f:
+      return TextureFormat::rgba16_float;
+    case spv::ImageFormatR32ui:
+      return TextureFormat::r32_uint;
+    case spv::ImageFormatR32i:
+      return TextureFormat::r32_sint;
+    case spv::ImageFormatR32f:
+      return TextureFormat::r32_float;
+    case spv::ImageFormatRg32ui:
+      return TextureFormat::rg32_uint;
+    case spv::ImageFormatRg32i:
+      return TextureFormat::rg32_sint;
+    case spv::ImageFormatRg32f:
+      return TextureFormat::rg32_float;
+    case spv::ImageFormatRgba32ui:
+      return TextureFormat::rgba32_uint;
+    case spv::ImageFormatRgba32i:
+      return TextureFormat::rgba32_sint;
+    case spv::ImageFormatRgba32f:
+      return TextureFormat::rgba32_float;
+    default:
+      throw Error(ErrorCode::unsupported, label,
+                  "the storage image " + name + " has SPIR-V image format " + std::to_string(format) +
+                      ", which not every device has");
   }
 }
 
@@ -70,6 +126,11 @@ class Reflector {
     for (const spirv_cross::Resource& block : resources.push_constant_buffers)
       result_.push_constant_size =
           static_cast<std::uint32_t>(compiler_.get_declared_struct_size(compiler_.get_type(block.base_type_id)));
+    // SPIRV-Cross does not count a shader record among what it looks for in the code.
+    const spirv_cross::ShaderResources declared = compiler_.get_shader_resources();
+    for (const spirv_cross::Resource& block : declared.shader_record_buffers)
+      result_.shader_record_size =
+          static_cast<std::uint32_t>(compiler_.get_declared_struct_size(compiler_.get_type(block.base_type_id)));
     add_specialization_constants();
     if (result_.stage == ShaderStage::compute) add_workgroup_size();
     return std::move(result_);
@@ -99,8 +160,12 @@ class Reflector {
       binding.count = descriptor_count(resource);
       if (kind == BindingKind::storage_buffer)
         binding.writable = !compiler_.get_buffer_block_flags(resource.id).get(spv::DecorationNonWritable);
-      if (kind == BindingKind::storage_image)
+      if (kind == BindingKind::storage_image) {
         binding.writable = !compiler_.has_decoration(resource.id, spv::DecorationNonWritable);
+        const spirv_cross::SPIRType::ImageType& image = compiler_.get_type(resource.base_type_id).image;
+        binding.dimension = dimension_of(image, resource.name, label_);
+        binding.format = format_of(image.format, resource.name, label_);
+      }
       result_.bindings.push_back(std::move(binding));
     }
   }

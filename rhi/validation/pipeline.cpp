@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <span>
+#include <string>
+
+#include "rhi/validation.hpp"
+#include "rhi/validation/require.hpp"
+
+namespace tandem::rhi::validation {
+namespace {
+
+using std::to_string;
+
+void check_workgroup_size(const ComputePipelineDesc& desc, const Limits& limits) {
+  const ShaderReflection& reflection = desc.shader->reflection();
+  std::uint64_t invocations = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    std::uint32_t size = reflection.workgroup_size[i];
+    for (const SpecializationValue& given : desc.specialization)
+      if (reflection.workgroup_size_constant[i] == given.id) size = given.value;
+    require(size > 0 && size <= limits.max_workgroup_size[i], desc.label,
+            "a workgroup size of " + to_string(size) + " in dimension " + to_string(i) +
+                ", where the device allows 1 to " + to_string(limits.max_workgroup_size[i]));
+    invocations *= size;
+  }
+  require(invocations <= limits.max_workgroup_invocations, desc.label,
+          to_string(invocations) + " invocations in a workgroup are more than the device's " +
+              to_string(limits.max_workgroup_invocations));
+}
+
+/// Each id is given once, and declared by one of the shaders.
+void check_specialization(const std::vector<SpecializationValue>& values, std::span<const ShaderModuleHandle> shaders,
+                          const std::string& label) {
+  const auto declares = [](const ShaderModuleHandle& shader, std::uint32_t id) {
+    const auto& constants = shader->reflection().specialization_constants;
+    return std::any_of(constants.begin(), constants.end(),
+                       [id](const SpecializationConstant& constant) { return constant.id == id; });
+  };
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::uint32_t id = values[i].id;
+    const bool declared = std::any_of(shaders.begin(), shaders.end(),
+                                      [&](const ShaderModuleHandle& shader) { return declares(shader, id); });
+    const std::string who = shaders.size() == 1 ? "the shader '" + shaders[0]->label() + "' has" : "no shader has a";
+    require(declared, label,
+            who + (shaders.size() == 1 ? " no specialisation constant " : " specialisation constant ") + to_string(id));
+    for (std::size_t j = 0; j < i; ++j)
+      require(values[j].id != id, label, "specialisation constant " + to_string(id) + " is given twice");
+  }
+}
+
+/// What a device must have room for, whatever the pipeline's kind.
+void check_interface(const PipelineInterface& interface, const std::string& label, const Limits& limits) {
+  require(interface.push_constant_size <= limits.max_push_constant_size, label,
+          "the shader's push constants have " + to_string(interface.push_constant_size) +
+              " bytes, more than the device's " + to_string(limits.max_push_constant_size));
+  for (const ShaderBinding& binding : interface.bindings) {
+    require(binding.set < limits.max_bind_groups, label,
+            "the shader uses descriptor set " + to_string(binding.set) + ", but the device has " +
+                to_string(limits.max_bind_groups));
+    if (binding.kind == BindingKind::sampled_image || binding.kind == BindingKind::sampler)
+      throw Error(
+          ErrorCode::unsupported, label,
+          "the shader binds '" + binding.name + "', a sampled image or a sampler, which bind groups cannot hold");
+  }
+}
+
+void check_stage(const ShaderModuleHandle& shader, ShaderStage stage, const std::string& label,
+                 const std::string& what) {
+  require(shader != nullptr, label, what + " names no shader");
+  require(shader->reflection().stage == stage, label,
+          what + ": the shader '" + shader->label() + "' is of another stage");
+}
+
+void check_optional_stage(const ShaderModuleHandle& shader, ShaderStage stage, const std::string& label,
+                          const std::string& what) {
+  if (shader != nullptr) check_stage(shader, stage, label, what);
+}
+
+/// The bytes of data that a record of this shader has to hold.
+std::uint32_t wanted_data(const ShaderModuleHandle& shader) {
+  return shader != nullptr ? shader->reflection().shader_record_size : 0;
+}
+
+std::uint32_t wanted_data(const HitGroup& group) {
+  return std::max({wanted_data(group.closest_hit), wanted_data(group.any_hit), wanted_data(group.intersection)});
+}
+
+template <typename Shaders>
+void check_records(const ShaderRecords& records, const Shaders& shaders, const std::string& kind,
+                   const std::string& label, const Limits& limits) {
+  std::uint64_t largest = 0;
+  for (std::size_t i = 0; i < records.records.size(); ++i) {
+    const ShaderRecord& record = records.records[i];
+    const std::string what = kind + " record " + to_string(i);
+    largest = std::max<std::uint64_t>(largest, record.data.size());
+    if (record.shader == no_shader) continue;
+    require(
+        record.shader < shaders.size(), label,
+        what + " names shader " + to_string(record.shader) + " of a pipeline that has " + to_string(shaders.size()));
+    const std::uint32_t wanted = wanted_data(shaders[record.shader]);
+    require(
+        record.data.size() >= wanted, label,
+        what + " has " + to_string(record.data.size()) + " bytes of data, but its shader reads " + to_string(wanted));
+  }
+  require_limit(largest + limits.shader_handle_size, limits.max_shader_record_stride, label,
+                "bytes of a " + kind + " record");
+  if (records.stride == 0) return;
+  require(records.stride % limits.shader_record_alignment == 0, label,
+          "the stride of the " + kind + " records, " + to_string(records.stride) + ", is no multiple of the device's " +
+              to_string(limits.shader_record_alignment));
+  require(records.stride >= largest + limits.shader_handle_size, label,
+          "the stride of the " + kind + " records, " + to_string(records.stride) + ", is less than the " +
+              to_string(largest + limits.shader_handle_size) + " bytes of the largest");
+  require_limit(records.stride, limits.max_shader_record_stride, label, "bytes of stride of the " + kind + " records");
+}
+
+}  // namespace
+
+void check(const ComputePipelineDesc& desc, const DeviceInfo& device) {
+  require(desc.shader != nullptr, desc.label, "a compute pipeline needs a shader");
+  require(desc.shader->reflection().stage == ShaderStage::compute, desc.label,
+          "the shader '" + desc.shader->label() + "' is not a compute shader");
+  check_specialization(desc.specialization, {&desc.shader, 1}, desc.label);
+  check_workgroup_size(desc, device.limits);
+  check_interface(combined_interface({&desc.shader, 1}, desc.label), desc.label, device.limits);
+}
+
+void check(const RayTracingPipelineDesc& desc, const DeviceInfo& device) {
+  if (!device.capabilities.ray_tracing_pipeline)
+    throw Error(ErrorCode::unsupported, desc.label, "device '" + device.name + "' has no ray tracing pipelines");
+  require(!desc.ray_generation.empty(), desc.label, "a ray tracing pipeline needs a ray generation shader");
+  for (const ShaderModuleHandle& shader : desc.ray_generation)
+    check_stage(shader, ShaderStage::ray_generation, desc.label, "ray generation");
+  for (const ShaderModuleHandle& shader : desc.miss) check_stage(shader, ShaderStage::miss, desc.label, "miss");
+  for (std::size_t i = 0; i < desc.hit_groups.size(); ++i) {
+    const std::string group = "hit group " + to_string(i);
+    check_optional_stage(desc.hit_groups[i].closest_hit, ShaderStage::closest_hit, desc.label, group + " closest hit");
+    check_optional_stage(desc.hit_groups[i].any_hit, ShaderStage::any_hit, desc.label, group + " any hit");
+    check_optional_stage(desc.hit_groups[i].intersection, ShaderStage::intersection, desc.label,
+                         group + " intersection");
+  }
+  for (const ShaderModuleHandle& shader : desc.callable)
+    check_stage(shader, ShaderStage::callable, desc.label, "callable");
+  require_limit(desc.max_recursion_depth, device.limits.max_ray_recursion_depth, desc.label, "rays in flight at once");
+  const std::vector<ShaderModuleHandle> shaders = shaders_of(desc);
+  check_specialization(desc.specialization, shaders, desc.label);
+  check_interface(combined_interface(shaders, desc.label), desc.label, device.limits);
+}
+
+void check(const ShaderTableDesc& desc, const DeviceInfo& device) {
+  require(desc.pipeline != nullptr, desc.label, "a shader table needs a pipeline");
+  const RayTracingPipelineDesc& pipeline = desc.pipeline->desc();
+  require(!desc.ray_generation.records.empty(), desc.label, "a shader table needs a ray generation record");
+  for (const ShaderRecord& record : desc.ray_generation.records)
+    require(record.shader != no_shader, desc.label, "a ray generation record names no shader");
+  check_records(desc.ray_generation, pipeline.ray_generation, "ray generation", desc.label, device.limits);
+  check_records(desc.miss, pipeline.miss, "miss", desc.label, device.limits);
+  check_records(desc.hit, pipeline.hit_groups, "hit", desc.label, device.limits);
+  check_records(desc.callable, pipeline.callable, "callable", desc.label, device.limits);
+}
+
+}  // namespace tandem::rhi::validation
