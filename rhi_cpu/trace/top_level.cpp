@@ -7,6 +7,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi_cpu/trace/acceleration_structure.hpp"
+#include "rhi_cpu/trace/affine_inverse.hpp"
 #include "rhi_cpu/trace/scene.hpp"
 
 namespace tandem::cpu {
@@ -26,36 +27,13 @@ bool is_in_range(const float (&m)[3][4]) {
   return true;
 }
 
-/// Inverts an affine transform in double precision. False when it is out of range, or when single precision could find
-/// its determinant to be zero.
+/// False when the transform is out of range, or when single precision could find its determinant to be zero.
 bool invert(const float (&m)[3][4], float (&inverse)[3][4]) {
   if (!is_in_range(m)) return false;
-  double cofactors[3][3];
-  double determinant = 0;
-  double sum_of_magnitudes = 0;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      const int r1 = (row + 1) % 3, r2 = (row + 2) % 3;
-      const int c1 = (column + 1) % 3, c2 = (column + 2) % 3;
-      const double positive = double{m[r1][c1]} * double{m[r2][c2]};
-      const double negative = double{m[r1][c2]} * double{m[r2][c1]};
-      cofactors[row][column] = positive - negative;
-      if (row > 0) continue;
-      determinant += double{m[0][column]} * cofactors[0][column];
-      sum_of_magnitudes += std::abs(double{m[0][column]}) * (std::abs(positive) + std::abs(negative));
-    }
-  }
+  const AffineInverse result = inverse_of(m);
   // Four roundings of each product and sum, and a margin.
-  if (!(std::abs(determinant) > 0x1p-20 * sum_of_magnitudes)) return false;
-  for (int row = 0; row < 3; ++row) {
-    double translation = 0;
-    for (int column = 0; column < 3; ++column) {
-      const double value = cofactors[column][row] / determinant;
-      translation -= value * double{m[column][3]};
-      inverse[row][column] = static_cast<float>(value);
-    }
-    inverse[row][3] = static_cast<float>(translation);
-  }
+  if (!(std::abs(result.determinant) > 0x1p-20 * result.sum_of_magnitudes)) return false;
+  std::memcpy(inverse, result.rows, sizeof(inverse));
   return is_in_range(inverse);
 }
 
