@@ -1,0 +1,209 @@
+#include "compare/arbitration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+namespace tandem::compare {
+namespace {
+
+using pathtracer::RayKind;
+using pathtracer::TracedRay;
+
+constexpr double tolerated_ulp = 32;
+
+bool is_same_ray(const TracedRay& a, const TracedRay& b) {
+  return std::memcmp(&a, &b, offsetof(TracedRay, answer)) == 0;
+}
+
+double largest_magnitude(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+struct Corners {
+  glm::dvec3 a, b, c;
+};
+
+Corners corners_of(const pathtracer::Scene& scene, std::uint32_t triangle) {
+  const auto position = [&](int corner) {
+    return glm::dvec3(scene.positions[scene.triangles[triangle].vertices[corner]]);
+  };
+  return {position(0), position(1), position(2)};
+}
+
+/// The point of a triangle that is closest to `p` (Ericson, Real-Time Collision Detection, section 5.1.5: by the
+/// Voronoi region in which the point lies).
+glm::dvec3 closest_point(const Corners& t, const glm::dvec3& p) {
+  const auto on_segment = [&](const glm::dvec3& from, const glm::dvec3& to) {
+    const glm::dvec3 along = to - from;
+    const double squared_length = glm::dot(along, along);
+    const double s = squared_length > 0 ? std::clamp(glm::dot(p - from, along) / squared_length, 0.0, 1.0) : 0.0;
+    return from + s * along;
+  };
+  const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
+  const auto is_inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
+    return glm::dot(glm::cross(to - from, p - from), normal) >= 0;
+  };
+  if (glm::dot(normal, normal) > 0 && is_inside(t.a, t.b) && is_inside(t.b, t.c) && is_inside(t.c, t.a))
+    return p - normal * (glm::dot(p - t.a, normal) / glm::dot(normal, normal));
+  glm::dvec3 best = on_segment(t.a, t.b);
+  for (const glm::dvec3& candidate : {on_segment(t.b, t.c), on_segment(t.c, t.a)})
+    if (glm::distance(candidate, p) < glm::distance(best, p)) best = candidate;
+  return best;
+}
+
+/// Where the ray meets the plane of a triangle; nothing for a ray in the plane.
+std::optional<glm::dvec3> point_in_plane(const TracedRay& ray, const Corners& t) {
+  const glm::dvec3 origin(ray.origin), direction(ray.direction);
+  const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
+  const double cosine = glm::dot(normal, direction);
+  if (cosine == 0) return std::nullopt;
+  return origin + glm::dot(t.a - origin, normal) / cosine * direction;
+}
+
+double largest_magnitude(const pathtracer::Scene& scene) {
+  double magnitude = 0;
+  for (const glm::vec3& position : scene.positions)
+    magnitude = std::max(magnitude, largest_magnitude(glm::dvec3(position)));
+  return magnitude;
+}
+
+/// How far rounding may put a hit from where it is, in world space. @param scene_magnitude largest_magnitude(scene)
+double tolerated_distance(const TracedRay& ray, const pathtracer::Scene& scene, double scene_magnitude,
+                          std::uint32_t triangle) {
+  double magnitude = scene_magnitude;
+  if (triangle < scene.triangles.size()) {
+    const Corners t = corners_of(scene, triangle);
+    magnitude = std::max({largest_magnitude(t.a), largest_magnitude(t.b), largest_magnitude(t.c)});
+  }
+  magnitude = std::max(magnitude, largest_magnitude(glm::dvec3(ray.origin)));
+  return tolerated_ulp * double{std::numeric_limits<float>::epsilon()} * magnitude;
+}
+
+/// Two unit vectors perpendicular to `v` and to each other.
+std::pair<glm::dvec3, glm::dvec3> perpendicular(const glm::dvec3& v) {
+  const glm::dvec3 axis = std::abs(v.x) < 0.5 * glm::length(v) ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 first = glm::normalize(glm::cross(v, axis));
+  return {first, glm::normalize(glm::cross(v, first))};
+}
+
+/// Rays that differ from this one by up to `distance`: moved aside as a whole, tilted about its origin, and with either
+/// end moved along it.
+std::vector<TracedRay> neighbours(const TracedRay& ray, double distance, double reach) {
+  constexpr int directions = 16;
+  constexpr double pi = 3.14159265358979323846;
+  const glm::dvec3 origin(ray.origin), direction(ray.direction);
+  const double length = glm::length(direction);
+  const auto [right, up] = perpendicular(direction);
+  std::vector<TracedRay> rays;
+  const auto add = [&](const glm::dvec3& from, const glm::dvec3& along, double t_max) {
+    TracedRay moved = ray;
+    moved.origin = glm::vec3(from);
+    moved.direction = glm::vec3(along);
+    moved.t_max = static_cast<float>(t_max);
+    rays.push_back(moved);
+  };
+  for (const double fraction : {0.125, 0.5, 1.0}) {
+    for (int i = 0; i < directions; ++i) {
+      const double angle = 2 * pi * i / directions;
+      const glm::dvec3 aside = distance * fraction * (std::cos(angle) * right + std::sin(angle) * up);
+      add(origin + aside, direction, ray.t_max);
+      if (reach > 0) add(origin, direction + aside / reach, ray.t_max);
+    }
+    const double along = distance * fraction / length;
+    for (const double sign : {-1.0, 1.0}) {
+      add(origin + sign * along * direction, direction, ray.t_max);
+      add(origin, direction, ray.t_max + sign * along);
+    }
+  }
+  return rays;
+}
+
+/// Whether the ray meets `triangle`, or passes it, within `distance` of where it exactly meets `exact`.
+bool meets_beside(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32_t triangle, std::uint32_t exact,
+                  double distance) {
+  if (triangle >= scene.triangles.size() || exact >= scene.triangles.size()) return false;
+  const std::optional<glm::dvec3> hit = point_in_plane(ray, corners_of(scene, exact));
+  return hit && glm::distance(closest_point(corners_of(scene, triangle), *hit), *hit) <= distance;
+}
+
+}  // namespace
+
+PathComparison compare_paths(const pathtracer::PathId& path, std::span<const TracedRay> a,
+                             std::span<const TracedRay> b) {
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (!is_same_ray(a[i], b[i])) return {.parting = Parting::rounding, .dispute = std::nullopt};
+    if (a[i].answer == b[i].answer) continue;
+    return {.parting = Parting::dispute,
+            .dispute = Dispute{.path = path,
+                               .ray_index = static_cast<std::uint32_t>(i),
+                               .ray = a[i],
+                               .answer_a = a[i].answer,
+                               .answer_b = b[i].answer}};
+  }
+  return {.parting = a.size() == b.size() ? Parting::none : Parting::length, .dispute = std::nullopt};
+}
+
+const char* name(Ruling ruling) {
+  switch (ruling) {
+    case Ruling::a_right:
+      return "a is right";
+    case Ruling::b_right:
+      return "b is right";
+    case Ruling::both_wrong:
+      return "both are wrong";
+    case Ruling::tie:
+      return "tie";
+  }
+  return "";
+}
+
+std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
+                                 const ExactTracer& trace) {
+  std::vector<TracedRay> rays;
+  for (const Dispute& dispute : disputes) rays.push_back(dispute.ray);
+  const std::vector<std::uint32_t> exact = trace(rays);
+
+  const double scene_magnitude = largest_magnitude(scene);
+  // All neighbours in one go: a device is slow to start.
+  std::vector<TracedRay> moved;
+  std::vector<std::size_t> first_moved;
+  std::vector<double> distances;
+  for (std::size_t i = 0; i < disputes.size(); ++i) {
+    const TracedRay& ray = disputes[i].ray;
+    // The answer to a shadow ray names no triangle.
+    const std::uint32_t triangle = ray.kind == RayKind::closest ? exact[i] : pathtracer::no_triangle;
+    distances.push_back(tolerated_distance(ray, scene, scene_magnitude, triangle));
+    double reach = ray.kind == RayKind::occlusion ? double{ray.t_max} : 0.0;
+    if (triangle < scene.triangles.size()) {
+      if (const auto hit = point_in_plane(ray, corners_of(scene, triangle)))
+        reach = glm::distance(*hit, glm::dvec3(ray.origin)) / glm::length(glm::dvec3(ray.direction));
+    }
+    first_moved.push_back(moved.size());
+    const std::vector<TracedRay> around = neighbours(ray, distances.back(), reach);
+    moved.insert(moved.end(), around.begin(), around.end());
+  }
+  first_moved.push_back(moved.size());
+  const std::vector<std::uint32_t> moved_answers = trace(moved);
+
+  std::vector<Judgement> judgements;
+  for (std::size_t i = 0; i < disputes.size(); ++i) {
+    const Dispute& dispute = disputes[i];
+    const auto is_right = [&](std::uint32_t answer) {
+      if (answer == exact[i]) return true;
+      const auto begin = moved_answers.begin() + static_cast<std::ptrdiff_t>(first_moved[i]);
+      const auto end = moved_answers.begin() + static_cast<std::ptrdiff_t>(first_moved[i + 1]);
+      if (std::find(begin, end, answer) != end) return true;
+      return dispute.ray.kind == RayKind::closest && meets_beside(dispute.ray, scene, answer, exact[i], distances[i]);
+    };
+    const bool a = is_right(dispute.answer_a), b = is_right(dispute.answer_b);
+    judgements.push_back(
+        {.ruling = a && b ? Ruling::tie : (a ? Ruling::a_right : (b ? Ruling::b_right : Ruling::both_wrong)),
+         .exact_answer = exact[i]});
+  }
+  return judgements;
+}
+
+}  // namespace tandem::compare

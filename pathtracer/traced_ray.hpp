@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+/// Rays of the path tracer, one by one: TracedRay of shaders/ray_log.glsl, byte for byte (std430).
+namespace tandem::pathtracer {
+
+enum class RayKind : std::uint32_t {
+  closest = 0,   ///< which triangle is the first?
+  occlusion = 1  ///< is there any?
+};
+
+/// In TracedRay::answer of a closest ray: it meets nothing.
+inline constexpr std::uint32_t no_triangle = 0xffffffffu;
+
+/// A ray in world space, and what a device said of it.
+struct TracedRay {
+  glm::vec3 origin{0};
+  float t_max = 0;  ///< in lengths of the direction
+  glm::vec3 direction{0};
+  RayKind kind = RayKind::closest;
+  std::uint32_t answer = no_triangle;  ///< closest: index of the triangle, or no_triangle; occlusion: 1 or 0
+  std::uint32_t padding[3] = {0, 0, 0};
+};
+static_assert(sizeof(TracedRay) == 48 && offsetof(TracedRay, answer) == 32);
+
+/// Which path: one sample of one pixel.
+struct PathId {
+  glm::uvec2 pixel{0};
+  std::uint32_t sample = 0;
+};
+
+}  // namespace tandem::pathtracer

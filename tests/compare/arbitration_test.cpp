@@ -1,0 +1,130 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "compare/arbitration.hpp"
+
+namespace {
+
+using namespace tandem;
+using compare::Dispute;
+using compare::Parting;
+using compare::Ruling;
+using pathtracer::RayKind;
+using pathtracer::TracedRay;
+
+/// Right triangles with legs of length 2 in planes z = const, which rays along +z meet.
+pathtracer::Scene plates(const std::vector<float>& heights) {
+  pathtracer::Scene scene;
+  for (const float z : heights) {
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    for (const glm::vec3& corner : {glm::vec3(0, 0, z), glm::vec3(2, 0, z), glm::vec3(0, 2, z)})
+      scene.positions.push_back(corner);
+    scene.triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = 0});
+  }
+  return scene;
+}
+
+/// Every triangle, in double precision: what the exact device stands for here.
+std::vector<std::uint32_t> trace_exactly(const pathtracer::Scene& scene, std::span<const TracedRay> rays) {
+  std::vector<std::uint32_t> answers;
+  for (const TracedRay& ray : rays) {
+    double nearest = ray.t_max;
+    std::uint32_t triangle = pathtracer::no_triangle;
+    for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+      const auto corner = [&](int k) { return glm::dvec3(scene.positions[scene.triangles[i].vertices[k]]); };
+      const glm::dvec3 origin(ray.origin), direction(ray.direction);
+      const glm::dvec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+      const double t = glm::dot(corner(0) - origin, normal) / glm::dot(direction, normal);
+      const glm::dvec3 p = origin + t * direction;
+      bool inside = t > 0 && t < nearest;
+      for (int k = 0; k < 3; ++k)
+        inside = inside && glm::dot(glm::cross(corner((k + 1) % 3) - corner(k), p - corner(k)), normal) >= 0;
+      if (!inside) continue;
+      nearest = t;
+      triangle = i;
+    }
+    answers.push_back(ray.kind == RayKind::closest ? triangle : (triangle != pathtracer::no_triangle ? 1u : 0u));
+  }
+  return answers;
+}
+
+TracedRay upwards(float x, float y, RayKind kind = RayKind::closest) {
+  return {.origin = {x, y, 0}, .t_max = kind == RayKind::closest ? 1e30f : 4.0f, .direction = {0, 0, 1}, .kind = kind};
+}
+
+compare::Judgement judge(const pathtracer::Scene& scene, const TracedRay& ray, std::uint32_t a, std::uint32_t b) {
+  const Dispute dispute{.path = {}, .ray_index = 0, .ray = ray, .answer_a = a, .answer_b = b};
+  return compare::arbitrate({&dispute, 1}, scene,
+                            [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); })[0];
+}
+
+constexpr std::uint32_t none = pathtracer::no_triangle;
+
+TEST_CASE("well inside a triangle the device that sees it is right") {
+  const pathtracer::Scene scene = plates({1, 3});
+  const compare::Judgement judgement = judge(scene, upwards(0.5f, 0.5f), 0, 1);
+  CHECK(judgement.ruling == Ruling::a_right);
+  CHECK(judgement.exact_answer == 0);
+  CHECK(judge(scene, upwards(0.5f, 0.5f), none, 0).ruling == Ruling::b_right);
+  CHECK(judge(scene, upwards(0.5f, 0.5f), none, 1).ruling == Ruling::both_wrong);
+}
+
+TEST_CASE("at the border of a triangle, what lies behind it is as right") {
+  const pathtracer::Scene scene = plates({1, 3});
+  // 2e-7 from the leg x = 0: two units in the last place of a coordinate of 2.
+  CHECK(judge(scene, upwards(2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(-2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
+  // A thousandth is no rounding.
+  CHECK(judge(scene, upwards(1e-3f, 0.5f), 0, none).ruling == Ruling::a_right);
+  CHECK(judge(scene, upwards(-1e-3f, 0.5f), 0, none).ruling == Ruling::b_right);
+}
+
+TEST_CASE("of two triangles in one place either is right, of two that lie apart only the nearer") {
+  const float next = std::nextafter(1.0f, 2.0f);
+  CHECK(judge(plates({1, 1}), upwards(0.5f, 0.5f), 0, 1).ruling == Ruling::tie);
+  CHECK(judge(plates({1, next}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(judge(plates({1, 1.001f}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::b_right);
+}
+
+TEST_CASE("shadow rays are judged by whether anything is in the way") {
+  const pathtracer::Scene scene = plates({1});
+  CHECK(judge(scene, upwards(0.5f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::b_right);
+  CHECK(judge(scene, upwards(5, 5, RayKind::occlusion), 0, 1).ruling == Ruling::a_right);
+  CHECK(judge(scene, upwards(-2e-7f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::tie);
+  // The plate lies at the very end of the ray.
+  TracedRay ray = upwards(0.5f, 0.5f, RayKind::occlusion);
+  ray.t_max = std::nextafter(1.0f, 2.0f);
+  CHECK(judge(scene, ray, 0, 1).ruling == Ruling::tie);
+  ray.t_max = 1.001f;
+  CHECK(judge(scene, ray, 0, 1).ruling == Ruling::b_right);
+}
+
+TEST_CASE("paths part where a ray or an answer first differs") {
+  TracedRay first = upwards(0.5f, 0.5f);
+  first.answer = 0;
+  TracedRay other_answer = first;
+  other_answer.answer = 1;
+  TracedRay other_ray = first;
+  other_ray.origin.x = std::nextafter(0.5f, 1.0f);
+  const TracedRay path[] = {first, first};
+  const TracedRay disputed[] = {first, other_answer};
+  const TracedRay rounded[] = {first, other_ray};
+  CHECK(compare::compare_paths({}, path, path).parting == Parting::none);
+  CHECK(compare::compare_paths({}, path, std::span(path).first(1)).parting == Parting::length);
+  CHECK(compare::compare_paths({}, path, rounded).parting == Parting::rounding);
+  const compare::PathComparison comparison = compare::compare_paths({.pixel = {3, 4}, .sample = 5}, path, disputed);
+  CHECK(comparison.parting == Parting::dispute);
+  REQUIRE(comparison.dispute.has_value());
+  CHECK(comparison.dispute->ray_index == 1);
+  CHECK(comparison.dispute->answer_a == 0);
+  CHECK(comparison.dispute->answer_b == 1);
+  CHECK(comparison.dispute->path.sample == 5);
+}
+
+}  // namespace
