@@ -5,6 +5,7 @@
 #include "rhi/error.hpp"
 #include "rhi_cpu/acceleration_structure.hpp"
 #include "rhi_cpu/buffer.hpp"
+#include "rhi_cpu/texture.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -14,19 +15,27 @@ kernel::Resource resource_of(const rhi::BoundResource& bound, const std::string&
     const auto& buffer = static_cast<const Buffer&>(*range->buffer);
     return {.data = buffer.data() + range->offset, .size = range->resolved_size()};
   }
-  const auto& structure = static_cast<const TopLevelStructure&>(*std::get<rhi::AccelerationStructureHandle>(bound));
+  // A Resource has one type for all: the kernel only reads an image's description and a top level.
+  if (const auto* texture = std::get_if<rhi::TextureHandle>(&bound)) {
+    const kernel::Image& image = static_cast<const Texture&>(**texture).image();
+    return {.data = reinterpret_cast<std::byte*>(const_cast<kernel::Image*>(&image)), .size = 0};
+  }
+  const auto& handle = std::get<rhi::AccelerationStructureHandle>(bound);
+  if (handle == nullptr) return {};
+  const auto& structure = static_cast<const TopLevelStructure&>(*handle);
   if (structure.view() == nullptr)
     throw rhi::Error(rhi::ErrorCode::invalid_argument, structure.label(),
-                     fmt::format("a dispatch of '{}' traces it before it is built", label));
-  // A Resource has one type for all: the kernel only reads a top level.
+                     fmt::format("the pipeline '{}' traces it before it is built", label));
   return {.data = reinterpret_cast<std::byte*>(const_cast<kernel::TopLevel*>(structure.view())), .size = 0};
 }
 
 void check_owner(const rhi::BoundResource& bound, const DeviceState& device, const std::string& label) {
   if (const auto* range = std::get_if<rhi::BufferRange>(&bound))
     own<Buffer>(range->buffer, device, label);
-  else
-    own<TopLevelStructure>(std::get<rhi::AccelerationStructureHandle>(bound), device, label);
+  else if (const auto* texture = std::get_if<rhi::TextureHandle>(&bound))
+    own<Texture>(*texture, device, label);
+  else if (const auto& structure = std::get<rhi::AccelerationStructureHandle>(bound); structure != nullptr)
+    own<TopLevelStructure>(structure, device, label);
 }
 
 }  // namespace

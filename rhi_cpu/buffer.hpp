@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 
 #include "rhi/buffer.hpp"
 #include "rhi_cpu/device_state.hpp"
+#include "rhi_cpu/host_memory.hpp"
 
 namespace tandem::cpu {
 
@@ -20,12 +20,8 @@ class Buffer final : public rhi::Buffer {
   std::byte* data() const noexcept { return memory_.get(); }
 
  private:
-  struct Free {
-    void operator()(std::byte* memory) const;
-  };
-
   DeviceStateHandle device_;
-  std::unique_ptr<std::byte, Free> memory_;
+  HostMemory memory_;
 };
 
 }  // namespace tandem::cpu

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "rhi/error.hpp"
 #include "rhi/validation.hpp"
 #include "rhi_cpu/acceleration_structure.hpp"
@@ -11,12 +13,22 @@
 #include "rhi_cpu/buffer.hpp"
 #include "rhi_cpu/compute_pipeline.hpp"
 #include "rhi_cpu/query_pool.hpp"
+#include "rhi_cpu/ray_launch.hpp"
+#include "rhi_cpu/shader_table.hpp"
+#include "rhi_cpu/texture.hpp"
 
 namespace tandem::cpu {
 namespace {
 
 std::shared_ptr<Buffer> own_buffer(const rhi::BufferHandle& buffer, const DeviceState& device) {
   return own<Buffer>(buffer, device, buffer->desc().label);
+}
+
+std::vector<std::shared_ptr<BindGroup>> own_groups(std::span<const rhi::BindGroupHandle> groups,
+                                                   const DeviceState& device, const std::string& label) {
+  std::vector<std::shared_ptr<BindGroup>> result;
+  for (const rhi::BindGroupHandle& group : groups) result.push_back(own<BindGroup>(group, device, label));
+  return result;
 }
 
 void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGroup>> groups,
@@ -29,6 +41,23 @@ void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGr
                                   .workgroup_count = {workgroup_count[0], workgroup_count[1], workgroup_count[2]}};
   const std::uint64_t count = std::uint64_t{workgroup_count[0]} * workgroup_count[1] * workgroup_count[2];
   workers.for_each_range(count, [&](std::uint64_t first, std::uint64_t end) { kernel.run(dispatch, first, end); });
+}
+
+/// The size that a shader or an upload left in the buffer. Throws Error where it is beyond the device's limit.
+std::array<std::uint32_t, 3> indirect_size(const Buffer& buffer, std::uint64_t offset, const rhi::Limits& limits,
+                                           const std::string& label) {
+  std::array<std::uint32_t, 3> size;
+  std::memcpy(size.data(), buffer.data() + offset, sizeof(size));
+  std::uint64_t rest = limits.max_ray_invocations;
+  for (const std::uint32_t side : size) {
+    if (side == 0) return {0, 0, 0};
+    rest /= side;
+  }
+  if (rest == 0)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label,
+                     fmt::format("an indirect trace of {} x {} x {} has more than the device's {} invocations", size[0],
+                                 size[1], size[2], limits.max_ray_invocations));
+  return size;
 }
 
 }  // namespace
@@ -67,6 +96,22 @@ void CommandList::fill(const rhi::BufferRange& range, std::uint32_t value) {
   });
 }
 
+void CommandList::copy_to_texture(const rhi::BufferRange& source, const rhi::TextureHandle& destination) {
+  rhi::validation::check_texture_copy(*this, source, destination);
+  record([from = own_buffer(source.buffer, *device_), offset = source.offset,
+          to = own<Texture>(destination, *device_, destination->desc().label)] {
+    std::copy_n(from->data() + offset, to->texels().size(), to->texels().data());
+  });
+}
+
+void CommandList::copy_from_texture(const rhi::TextureHandle& source, const rhi::BufferRange& destination) {
+  rhi::validation::check_texture_copy(*this, destination, source);
+  record([from = own<Texture>(source, *device_, source->desc().label), to = own_buffer(destination.buffer, *device_),
+          offset = destination.offset] {
+    std::copy_n(from->texels().data(), from->texels().size(), to->data() + offset);
+  });
+}
+
 void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& structure,
                                      const rhi::BottomLevelDesc& desc) {
   const auto created = std::dynamic_pointer_cast<BottomLevelStructure>(structure);
@@ -87,12 +132,30 @@ void CommandList::build_top_level(const rhi::AccelerationStructureHandle& struct
 void CommandList::dispatch(const rhi::DispatchDesc& desc) {
   rhi::validation::check(desc, device_->info);
   const std::string& label = desc.pipeline->label();
-  std::vector<std::shared_ptr<BindGroup>> groups;
-  for (const rhi::BindGroupHandle& group : desc.bind_groups) groups.push_back(own<BindGroup>(group, *device_, label));
-  record([pipeline = own<ComputePipeline>(desc.pipeline, *device_, label), groups = std::move(groups),
+  record([pipeline = own<ComputePipeline>(desc.pipeline, *device_, label),
+          groups = own_groups(desc.bind_groups, *device_, label),
           push_constants = std::vector<std::byte>(desc.push_constants.begin(), desc.push_constants.end()),
           count = desc.workgroup_count,
           &workers = device_->workers] { run(*pipeline, groups, push_constants, count, workers); });
+}
+
+void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
+  rhi::validation::check(desc, device_->info);
+  const std::string& label = desc.table->desc().pipeline->label();
+  std::shared_ptr<Buffer> indirect;
+  if (!desc.indirect_size.empty()) indirect = own_buffer(desc.indirect_size.buffer, *device_);
+  record([table = own<ShaderTable>(desc.table, *device_, desc.table->label()),
+          first = FirstRecords{.ray_generation = desc.ray_generation_record,
+                               .miss = desc.first_miss_record,
+                               .hit = desc.first_hit_record,
+                               .callable = desc.first_callable_record},
+          groups = own_groups(desc.bind_groups, *device_, label),
+          push_constants = std::vector<std::byte>(desc.push_constants.begin(), desc.push_constants.end()),
+          size = desc.size, indirect, offset = desc.indirect_size.offset, device = device_] {
+    const std::array<std::uint32_t, 3> launched =
+        indirect == nullptr ? size : indirect_size(*indirect, offset, device->info.limits, table->pipeline().label());
+    cpu::trace_rays(*table, first, groups, push_constants, launched, device->workers);
+  });
 }
 
 void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) {
@@ -113,18 +176,6 @@ void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle&, c
 
 void CommandList::update_top_level(const rhi::AccelerationStructureHandle&, const rhi::TopLevelDesc&) {
   throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
-}
-
-void CommandList::copy_to_texture(const rhi::BufferRange&, const rhi::TextureHandle&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
-}
-
-void CommandList::copy_from_texture(const rhi::TextureHandle&, const rhi::BufferRange&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
-}
-
-void CommandList::trace_rays(const rhi::TraceRaysDesc&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "ray tracing pipelines are not supported yet");
 }
 
 }  // namespace tandem::cpu

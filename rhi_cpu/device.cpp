@@ -13,8 +13,12 @@
 #include "rhi_cpu/compute_pipeline.hpp"
 #include "rhi_cpu/device_state.hpp"
 #include "rhi_cpu/fence.hpp"
+#include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/query_pool.hpp"
+#include "rhi_cpu/ray_tracing_pipeline.hpp"
 #include "rhi_cpu/shader_module.hpp"
+#include "rhi_cpu/shader_table.hpp"
+#include "rhi_cpu/texture.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -57,20 +61,26 @@ class Device final : public rhi::Device {
   }
 
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "textures are not supported yet");
+    rhi::validation::check(desc, info());
+    return std::make_shared<Texture>(state_, desc);
   }
 
   rhi::RayTracingPipelineHandle create_ray_tracing_pipeline(const rhi::RayTracingPipelineDesc& desc) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "ray tracing pipelines are not supported yet");
+    rhi::validation::check(desc, info());
+    return std::make_shared<RayTracingPipeline>(state_, desc);
   }
 
   rhi::ShaderTableHandle create_shader_table(const rhi::ShaderTableDesc& desc) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "ray tracing pipelines are not supported yet");
+    rhi::validation::check(desc, info());
+    return std::make_shared<ShaderTable>(state_, desc);
   }
 
   rhi::BindGroupHandle create_bind_group(const rhi::BindGroupDesc& desc) override {
     rhi::validation::check(desc, info());
-    own<ComputePipeline>(desc.pipeline, *state_, desc.label);
+    if (desc.pipeline->kind() == rhi::Pipeline::Kind::compute)
+      own<ComputePipeline>(desc.pipeline, *state_, desc.label);
+    else
+      own<RayTracingPipeline>(desc.pipeline, *state_, desc.label);
     return std::make_shared<BindGroup>(state_, desc);
   }
 
@@ -122,7 +132,15 @@ rhi::Limits limits() {
           .max_bind_groups = 32,
           .max_geometry_count = (1u << 24) - 1,
           .max_primitive_count = (1u << 29) - 1,
-          .max_instance_count = (1u << 24) - 1};
+          .max_instance_count = (1u << 24) - 1,
+          .max_ray_recursion_depth = 31,
+          .max_ray_invocations = 1u << 30,
+          .shader_record_alignment = 32,
+          .max_shader_record_stride = 4096,
+          .shader_handle_size = 32,
+          .max_hit_attribute_size = kernel::max_hit_attribute_size,
+          .max_texture_size = {16384, 16384, 2048, 16384},
+          .max_texture_layers = 2048};
 }
 
 }  // namespace
@@ -143,8 +161,11 @@ rhi::DeviceInfo device_info() {
           .api = "",
           .kind = rhi::DeviceKind::cpu,
           .capabilities = {.ray_query = true,
-                           .ray_tracing_pipeline = false,
+                           .ray_tracing_pipeline = true,
                            .position_fetch = false,
+                           .trace_rays_indirect = true,
+                           .primitive_culling = true,
+                           .null_acceleration_structure = true,
                            .scalar_block_layout = true,
                            .shader_int64 = true,
                            .shader_float64 = true,
