@@ -11,4 +11,6 @@
 #include "rhi_cpu/kernel/memory.hpp"
 #include "rhi_cpu/kernel/packing.hpp"
 #include "rhi_cpu/kernel/ray_query.hpp"
+#include "rhi_cpu/kernel/ray_tracing.hpp"
+#include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/kernel/types.hpp"

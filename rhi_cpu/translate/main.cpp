@@ -52,7 +52,7 @@ std::string embedded_words(const std::vector<std::uint32_t>& words, const std::s
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Translates a SPIR-V compute shader to the C++ that Tandem's CPU device runs");
+  CLI::App app("Translates a SPIR-V shader to the C++ that Tandem's CPU device runs");
   std::string input, kernel, embed, name_space = "tandem::shaders", name = "shader";
   std::string entry_symbol = tandem::cpu::TranslateOptions().entry_symbol;
   app.add_option("spirv", input, "SPIR-V binary")->required();

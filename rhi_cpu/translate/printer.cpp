@@ -37,6 +37,7 @@ std::string Printer::compile() {
   build_function_control_flow_graphs_and_analyze();
   set_up_names();
   set_up_variables();
+  set_up_endings();
   measure_functions();
 
   std::uint32_t passes = 0;
@@ -44,6 +45,7 @@ std::string Printer::compile() {
     reset(passes++);
     buffer.reset();
     addresses_.clear();
+    payloads_.clear();
     print_module();
   } while (is_forcing_recompilation());
   return buffer.str();
@@ -126,6 +128,12 @@ void Printer::set_up_variables() {
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
     if (variable.storage == spv::StorageClassPrivate)
       ir.meta[id].decoration.alias = fmt::format("private_{}_{}", ir.meta[id].decoration.alias, id);
+    else if (is_payload(variable.storage) || is_incoming_payload(variable.storage))
+      ir.meta[id].decoration.alias = fmt::format("payload_{}", id);
+    else if (variable.storage == spv::StorageClassHitAttributeKHR)
+      ir.meta[id].decoration.alias = fmt::format("hit_attributes_{}", id);
+    else if (variable.storage == spv::StorageClassInput && has_decoration(id, spv::DecorationBuiltIn))
+      built_in_types_[get_decoration(id, spv::DecorationBuiltIn)] = pointee(variable.basetype);
     else if (is_buffer(variable.storage) || variable.storage == spv::StorageClassUniformConstant)
       if (ir.meta[id].decoration.decoration_flags.get(spv::DecorationBinding))
         ir.meta[id].decoration.alias = fmt::format("block_{}", id);
@@ -172,7 +180,10 @@ void Printer::print_module() {
   statement("");
   statement(struct_declarations_, constants, memory, members, functions, "};");
   statement("");
-  print_run();
+  if (is_traced())
+    print_shader_call();
+  else
+    print_run();
   print_info();
 }
 
@@ -196,11 +207,15 @@ std::uint32_t Printer::first_resource_of(std::uint32_t variable) const {
 
 void Printer::print_members() {
   statement("struct Invocation {");
-  statement("const k::Resource* resources;");
-  statement("const std::byte* push_constants;");
-  for (const char* built_in : {"NumWorkgroups", "WorkgroupId", "LocalInvocationId", "GlobalInvocationId"})
-    statement("k::uvec3 built_in_", built_in, ";");
-  statement("k::uint built_in_LocalInvocationIndex;");
+  if (is_traced()) {
+    print_traced_members();
+  } else {
+    statement("const k::Resource* resources;");
+    statement("const std::byte* push_constants;");
+    for (const char* built_in : {"NumWorkgroups", "WorkgroupId", "LocalInvocationId", "GlobalInvocationId"})
+      statement("k::uvec3 built_in_", built_in, ";");
+    statement("k::uint built_in_LocalInvocationIndex;");
+  }
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
     if (variable.storage == spv::StorageClassPrivate) {
       const std::uint32_t type = pointee(variable.basetype);
@@ -266,6 +281,26 @@ std::string Printer::resource_kind(rhi::BindingKind kind) const {
   }
 }
 
+std::string Printer::stage_name() const {
+  switch (reflection_.stage) {
+    case rhi::ShaderStage::compute:
+      return "compute";
+    case rhi::ShaderStage::ray_generation:
+      return "ray_generation";
+    case rhi::ShaderStage::any_hit:
+      return "any_hit";
+    case rhi::ShaderStage::closest_hit:
+      return "closest_hit";
+    case rhi::ShaderStage::miss:
+      return "miss";
+    case rhi::ShaderStage::intersection:
+      return "intersection";
+    case rhi::ShaderStage::callable:
+      return "callable";
+  }
+  fail("an unknown shader stage");
+}
+
 void Printer::print_info() {
   std::uint32_t resources = 0;
   std::string slots;
@@ -276,11 +311,13 @@ void Printer::print_info() {
   }
   const bool any = !reflection_.bindings.empty();
   if (any) statement("constexpr k::BindingSlot binding_slots[] = {\n", slots, "};");
-  statement(
-      fmt::format("constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, run, "
-                  "k::Stage::compute, nullptr, 0, 0}};\n",
-                  workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
-                  reflection_.bindings.size(), any ? "binding_slots" : "nullptr"));
+  const std::string payload_size = incoming_payload_type_.empty() ? "0" : "sizeof(" + incoming_payload_type_ + ")";
+  statement(fmt::format(
+      "constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, {}, k::Stage::{}, {}, "
+      "{}, {}}};\n",
+      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
+      reflection_.bindings.size(), any ? "binding_slots" : "nullptr", is_traced() ? "nullptr" : "run", stage_name(),
+      is_traced() ? "call" : "nullptr", reflection_.shader_record_size, payload_size));
   statement("}  // namespace");
   statement("");
   statement("extern \"C\" __attribute__((visibility(\"default\"))) const tandem::kernel::KernelInfo* ", entry_symbol_,
@@ -302,7 +339,9 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
       parameters += type_name(parameter.type) + " " + to_name(parameter.id);
     } else if (is_buffer(type.storage)) {
       if (get<Type>(pointee(parameter.type)).columns > 1) fail("a pointer to a matrix in a buffer as parameter");
-      parameters += "std::byte* " + to_name(parameter.id);
+      const bool is_constant =
+          type.storage == spv::StorageClassPushConstant || type.storage == spv::StorageClassShaderRecordBufferKHR;
+      parameters += (is_constant ? "const std::byte* " : "std::byte* ") + to_name(parameter.id);
       addresses_[parameter.id] = {.bytes = to_name(parameter.id), .resource = ""};
     } else {
       const bool by_value = type.storage == spv::StorageClassUniformConstant;
@@ -327,6 +366,11 @@ std::string Printer::variable_decl(const SPIRVariable& variable) {
 }
 
 std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
+  if (is_traced()) {
+    const auto type = built_in_types_.find(builtin);
+    if (type == built_in_types_.end()) fail(fmt::format("built-in {}", static_cast<std::uint32_t>(builtin)));
+    return fmt::format("{}({})", type_name(type->second), traced_built_in(builtin));
+  }
   switch (builtin) {
     case spv::BuiltInNumWorkgroups:
       return "built_in_NumWorkgroups";

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <spirv_cross/spirv_glsl.hpp>
@@ -15,7 +16,7 @@
 
 namespace tandem::cpu {
 
-/// Prints one compute shader as C++.
+/// Prints one shader as C++.
 ///
 /// SPIRV-Cross parses the module, names things, turns the control flow graph into structured statements and hoists
 /// temporaries; this class prints every declaration, instruction and constant itself. Nothing is forwarded: each result
@@ -74,6 +75,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string resource_kind(rhi::BindingKind kind) const;
   const rhi::ShaderBinding* binding_of(std::uint32_t variable) const;
   std::uint32_t first_resource_of(std::uint32_t variable) const;
+  std::string stage_name() const;
 
   // printer_types.cpp: names of types, structs, constants.
   std::string type_name(std::uint32_t type_id) { return type_name(get<Type>(type_id)); }
@@ -124,6 +126,21 @@ class Printer : public spirv_cross::CompilerGLSL {
   // printer_instructions.cpp: which instruction goes where; ray queries.
   void print_ray_query(spv::Op op, Operands ops);
 
+  // printer_ray_tracing.cpp: the stages of a ray tracing pipeline.
+  bool is_traced() const;
+  bool is_payload(spv::StorageClass storage) const;
+  bool is_incoming_payload(spv::StorageClass storage) const;
+  void set_up_endings();
+  /// The statement that ends the function being printed, and with it the shader.
+  std::string ending();
+  void print_call_ending(std::uint32_t function_id);
+  std::uint32_t value_alignment(const Type& type) const;
+  std::uint32_t value_size(const Type& type) const;
+  void print_traced_members();
+  void print_shader_call();
+  void print_ray_tracing(spv::Op op, Operands ops);
+  std::string traced_built_in(spv::BuiltIn built_in) const;
+
   // printer_extended.cpp: GLSL.std.450.
   void print_extended(Operands ops, std::uint32_t length);
   void print_split(Operands ops, const char* function, bool through_pointer);
@@ -158,6 +175,10 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_set<std::uint32_t> composite_constants_;
   std::unordered_map<std::uint32_t, std::uint64_t> inlined_size_;  ///< instructions of a function with all its callees
   bool has_line_numbers_ = false;
+  std::unordered_map<std::uint32_t, std::uint32_t> built_in_types_;  ///< of the variable of a built-in
+  std::unordered_set<std::uint32_t> ending_functions_;               ///< a call to one may end the shader
+  std::vector<std::pair<std::string, std::string>> payloads_;        ///< type and name of what is passed on
+  std::string incoming_payload_type_;                                ///< "" without one
 };
 
 }  // namespace tandem::cpu

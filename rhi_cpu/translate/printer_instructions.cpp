@@ -111,6 +111,8 @@ void Printer::emit_instruction(const Instruction& instruction) {
   }
   const bool atomic = (op >= spv::OpAtomicLoad && op <= spv::OpAtomicXor) || op == spv::OpAtomicFAddEXT;
   if (atomic) return print_atomic(op, ops);
+  if (op >= spv::OpTraceRayKHR && op <= spv::OpTerminateRayKHR) return print_ray_tracing(op, ops);
+  if (op == spv::OpReportIntersectionKHR) return print_ray_tracing(op, ops);
   if (op >= spv::OpRayQueryInitializeKHR) return print_ray_query(op, ops);
   if (print_arithmetic(op, ops) || print_relation(op, ops) || print_conversion(op, ops) || print_bits(op, ops) ||
       print_matrix(op, ops))

@@ -17,7 +17,7 @@ std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
 
 bool Printer::is_buffer(spv::StorageClass storage) const {
   return storage == spv::StorageClassUniform || storage == spv::StorageClassStorageBuffer ||
-         storage == spv::StorageClassPushConstant;
+         storage == spv::StorageClassPushConstant || storage == spv::StorageClassShaderRecordBufferKHR;
 }
 
 bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && type_of(id).pointer; }
@@ -34,6 +34,7 @@ Printer::Address Printer::address_of(std::uint32_t pointer_id) {
   const auto* variable = maybe_get<SPIRVariable>(pointer_id);
   if (variable == nullptr) fail("a pointer into a buffer that comes from neither a variable nor an access chain");
   if (variable->storage == spv::StorageClassPushConstant) return {.bytes = "push_constants", .resource = ""};
+  if (variable->storage == spv::StorageClassShaderRecordBufferKHR) return {.bytes = "shader_record", .resource = ""};
   if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = to_name(pointer_id)};
   return {.bytes = to_name(pointer_id), .resource = fmt::format("resources[{}]", first_resource_of(pointer_id))};
 }

@@ -82,6 +82,7 @@ void Printer::print_call(Operands ops, std::uint32_t length) {
     statement(text, ";");
   else
     define(ops[0], ops[1], text);
+  print_call_ending(ops[2]);
 }
 
 void Printer::print_composite(spv::Op op, Operands ops, std::uint32_t length) {

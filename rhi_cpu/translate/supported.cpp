@@ -46,20 +46,45 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityAtomicFloat32AddEXT,
                                             spv::CapabilityAtomicFloat64AddEXT,
                                             spv::CapabilityRayQueryKHR,
+                                            spv::CapabilityRayTracingKHR,
+                                            spv::CapabilityRayCullMaskKHR,
                                             spv::CapabilityRayTraversalPrimitiveCullingKHR};
+
+constexpr spv::ExecutionModel execution_models[] = {spv::ExecutionModelGLCompute,  spv::ExecutionModelRayGenerationKHR,
+                                                    spv::ExecutionModelAnyHitKHR,  spv::ExecutionModelClosestHitKHR,
+                                                    spv::ExecutionModelMissKHR,    spv::ExecutionModelIntersectionKHR,
+                                                    spv::ExecutionModelCallableKHR};
 
 constexpr spv::ExecutionMode execution_modes[] = {spv::ExecutionModeLocalSize, spv::ExecutionModeLocalSizeId,
                                                   spv::ExecutionModeSignedZeroInfNanPreserve,
                                                   spv::ExecutionModeDenormPreserve, spv::ExecutionModeRoundingModeRTE};
 
-constexpr spv::StorageClass storage_classes[] = {spv::StorageClassUniformConstant, spv::StorageClassInput,
-                                                 spv::StorageClassUniform,         spv::StorageClassPrivate,
-                                                 spv::StorageClassFunction,        spv::StorageClassPushConstant,
-                                                 spv::StorageClassStorageBuffer};
+constexpr spv::StorageClass storage_classes[] = {spv::StorageClassUniformConstant,
+                                                 spv::StorageClassInput,
+                                                 spv::StorageClassUniform,
+                                                 spv::StorageClassPrivate,
+                                                 spv::StorageClassFunction,
+                                                 spv::StorageClassPushConstant,
+                                                 spv::StorageClassStorageBuffer,
+                                                 spv::StorageClassRayPayloadKHR,
+                                                 spv::StorageClassIncomingRayPayloadKHR,
+                                                 spv::StorageClassCallableDataKHR,
+                                                 spv::StorageClassIncomingCallableDataKHR,
+                                                 spv::StorageClassHitAttributeKHR,
+                                                 spv::StorageClassShaderRecordBufferKHR};
 
-constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,      spv::BuiltInWorkgroupSize,
-                                      spv::BuiltInWorkgroupId,        spv::BuiltInLocalInvocationId,
-                                      spv::BuiltInGlobalInvocationId, spv::BuiltInLocalInvocationIndex};
+constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,       spv::BuiltInWorkgroupSize,
+                                      spv::BuiltInWorkgroupId,         spv::BuiltInLocalInvocationId,
+                                      spv::BuiltInGlobalInvocationId,  spv::BuiltInLocalInvocationIndex,
+                                      spv::BuiltInLaunchIdKHR,         spv::BuiltInLaunchSizeKHR,
+                                      spv::BuiltInInstanceId,          spv::BuiltInInstanceCustomIndexKHR,
+                                      spv::BuiltInRayGeometryIndexKHR, spv::BuiltInPrimitiveId,
+                                      spv::BuiltInWorldRayOriginKHR,   spv::BuiltInWorldRayDirectionKHR,
+                                      spv::BuiltInObjectRayOriginKHR,  spv::BuiltInObjectRayDirectionKHR,
+                                      spv::BuiltInRayTminKHR,          spv::BuiltInRayTmaxKHR,
+                                      spv::BuiltInHitKindKHR,          spv::BuiltInObjectToWorldKHR,
+                                      spv::BuiltInWorldToObjectKHR,    spv::BuiltInIncomingRayFlagsKHR,
+                                      spv::BuiltInCullMaskKHR};
 
 /// Those that mean something here, and those that promise or allow what a CPU does anyway.
 constexpr spv::Decoration decorations[] = {
@@ -117,6 +142,9 @@ constexpr spv::Op instructions[] = {
     spv::OpShiftRightLogical, spv::OpShiftRightArithmetic, spv::OpShiftLeftLogical, spv::OpBitwiseOr, spv::OpBitwiseXor,
     spv::OpBitwiseAnd, spv::OpNot, spv::OpBitFieldInsert, spv::OpBitFieldSExtract, spv::OpBitFieldUExtract,
     spv::OpBitReverse, spv::OpBitCount,
+    // ray tracing
+    spv::OpTraceRayKHR, spv::OpExecuteCallableKHR, spv::OpReportIntersectionKHR, spv::OpIgnoreIntersectionKHR,
+    spv::OpTerminateRayKHR,
     // ray queries
     spv::OpRayQueryInitializeKHR, spv::OpRayQueryTerminateKHR, spv::OpRayQueryConfirmIntersectionKHR,
     spv::OpRayQueryProceedKHR, spv::OpRayQueryGetIntersectionTypeKHR, spv::OpRayQueryGetRayTMinKHR,
@@ -182,7 +210,8 @@ class Checker {
         import(word(1), literal_string(i.subspan(std::min<std::size_t>(2, i.size()))));
         break;
       case spv::OpEntryPoint:
-        if (word(1) != spv::ExecutionModelGLCompute) fail("execution model " + word_after_operation(i));
+        model_ = word(1);
+        if (!contains(execution_models, model_)) fail("execution model " + word_after_operation(i));
         break;
       case spv::OpExecutionMode:
       case spv::OpExecutionModeId:
@@ -240,6 +269,8 @@ class Checker {
   }
 
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) const {
+    // Of a payload or a hit attribute, which its variable names too.
+    if (decoration == spv::DecorationLocation && model_ != spv::ExecutionModelGLCompute) return;
     if (!contains(decorations, decoration)) {
       const std::uint32_t one[] = {3u << 16 | spv::OpDecorate, 1, decoration};
       const std::uint32_t two[] = {4u << 16 | spv::OpDecorate, 1, decoration, operand};
@@ -273,6 +304,7 @@ class Checker {
 
   const std::string& label_;
   std::map<std::uint32_t, std::string> sets_;
+  std::uint32_t model_ = spv::ExecutionModelGLCompute;
 };
 
 }  // namespace

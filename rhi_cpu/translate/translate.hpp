@@ -6,12 +6,12 @@
 
 #include "rhi/compute_pipeline.hpp"
 
-/// SPIR-V to C++: one compute shader becomes one C++20 translation unit that includes "rhi_cpu/kernel/kernel.hpp" and
-/// exports one function that returns its kernel::KernelInfo.
+/// SPIR-V to C++: one shader, of compute or of a ray tracing stage, becomes one C++20 translation unit that includes
+/// "rhi_cpu/kernel/kernel.hpp" and exports one function that returns its kernel::KernelInfo.
 namespace tandem::cpu {
 
 /// Raised whenever the same SPIR-V translates to other C++ than before.
-inline constexpr std::uint32_t translator_version = 1;
+inline constexpr std::uint32_t translator_version = 2;
 
 struct TranslateOptions {
   /// Values of specialisation constants, baked in; the others keep their defaults.
@@ -24,7 +24,7 @@ struct Translation {
   std::string source;
 };
 
-/// Translates the compute shader in `spirv`. Floating-point operations keep their order and are never contracted;
+/// Translates the shader in `spirv`. Floating-point operations keep their order and are never contracted;
 /// integers wrap; every variable without an initialiser starts as zero.
 /// @param label names the shader in errors
 /// Throws rhi::Error: invalid_argument when the words are no valid SPIR-V module or a specialisation value names no

@@ -40,6 +40,10 @@ std::vector<std::uint32_t> compute_spirv(const std::string& glsl, bool debug_inf
   return glsl::compile("#version 460\n" + glsl, rhi::ShaderStage::compute, "test.comp", options);
 }
 
+std::vector<std::uint32_t> traced_spirv(const std::string& glsl, rhi::ShaderStage stage) {
+  return glsl::compile("#version 460\n#extension GL_EXT_ray_tracing : require\n" + glsl, stage, "test.glsl");
+}
+
 Kernel::Kernel(const std::string& glsl, const KernelOptions& options) : Kernel(compute_spirv(glsl), options) {}
 
 Kernel::Kernel(const std::vector<std::uint32_t>& spirv, const KernelOptions& options) : folder_(new_folder()) {

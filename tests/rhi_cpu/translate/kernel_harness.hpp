@@ -12,6 +12,7 @@
 
 #include "rhi/compute_pipeline.hpp"
 #include "rhi_cpu/kernel/abi.hpp"
+#include "rhi_cpu/kernel/shader_call.hpp"
 
 /// GLSL to a loaded kernel without a device, for tests of the translator alone.
 namespace tandem::test {
@@ -24,6 +25,9 @@ struct KernelOptions {
 
 /// GLSL compute shader to SPIR-V for Vulkan 1.2, after a #version line that every test shares.
 std::vector<std::uint32_t> compute_spirv(const std::string& glsl, bool debug_info = false);
+
+/// GLSL of a stage of a ray tracing pipeline, with GL_EXT_ray_tracing.
+std::vector<std::uint32_t> traced_spirv(const std::string& glsl, rhi::ShaderStage stage);
 
 class Kernel {
  public:
@@ -39,6 +43,9 @@ class Kernel {
   void run(std::initializer_list<kernel::Resource> resources,
            std::initializer_list<std::uint32_t> workgroup_count = {1},
            std::span<const std::byte> push_constants = {}) const;
+
+  /// Runs a shader of a ray tracing stage once.
+  void call(kernel::ShaderCall& call) const { info_->call(call); }
 
  private:
   std::filesystem::path folder_;
