@@ -1,9 +1,11 @@
 #include "rhi_vulkan/acceleration_structure.hpp"
 
-#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <variant>
+#include <vector>
+
+#include "rhi_vulkan/command_buffer.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -23,49 +25,6 @@ static_assert(equal(rhi::InstanceFlags::triangle_flip_facing, vk::GeometryInstan
 static_assert(equal(rhi::InstanceFlags::force_opaque, vk::GeometryInstanceFlagBitsKHR::eForceOpaque));
 static_assert(equal(rhi::InstanceFlags::force_no_opaque, vk::GeometryInstanceFlagBitsKHR::eForceNoOpaque));
 
-vk::GeometryFlagsKHR geometry_flags(rhi::GeometryFlags flags) {
-  vk::GeometryFlagsKHR result;
-  if (has(flags, rhi::GeometryFlags::opaque)) result |= vk::GeometryFlagBitsKHR::eOpaque;
-  if (has(flags, rhi::GeometryFlags::no_duplicate_any_hit))
-    result |= vk::GeometryFlagBitsKHR::eNoDuplicateAnyHitInvocation;
-  return result;
-}
-
-vk::IndexType index_type(rhi::IndexFormat format) {
-  switch (format) {
-    case rhi::IndexFormat::uint16:
-      return vk::IndexType::eUint16;
-    case rhi::IndexFormat::uint32:
-      return vk::IndexType::eUint32;
-    default:
-      return vk::IndexType::eNoneKHR;
-  }
-}
-
-/// The address of the range, 0 when it is empty; the buffer joins the input's.
-std::uint64_t address_of(const rhi::BufferRange& range, BuildInput& input, const ContextHandle& context,
-                         const std::string& label) {
-  if (range.empty()) return 0;
-  input.buffers.push_back(range.buffer);
-  return own<Buffer>(range.buffer, context, label, "buffer of a build").device_address() + range.offset;
-}
-
-void add(const rhi::TriangleGeometry& triangles, BuildInput& input, const ContextHandle& context,
-         const std::string& label) {
-  const vk::AccelerationStructureGeometryTrianglesDataKHR data = {
-      .vertexFormat = vk::Format::eR32G32B32Sfloat,
-      .vertexData = {.deviceAddress = address_of(triangles.vertices, input, context, label)},
-      .vertexStride = triangles.vertex_stride,
-      .maxVertex = std::max(triangles.vertex_count, 1u) - 1,
-      .indexType = index_type(triangles.index_format),
-      .indexData = {.deviceAddress = address_of(triangles.indices, input, context, label)},
-      .transformData = {.deviceAddress = address_of(triangles.transform, input, context, label)}};
-  input.geometries.push_back({.geometryType = vk::GeometryTypeKHR::eTriangles,
-                              .geometry = {.triangles = data},
-                              .flags = geometry_flags(triangles.flags)});
-  input.ranges.push_back({.primitiveCount = triangles.triangle_count});
-}
-
 /// The desc without what only a build reads. A transform stays: whether there is one is part of the structure's shape.
 rhi::BottomLevelDesc without_inputs(rhi::BottomLevelDesc desc) {
   for (rhi::Geometry& geometry : desc.geometries) {
@@ -79,64 +38,100 @@ rhi::BottomLevelDesc without_inputs(rhi::BottomLevelDesc desc) {
 
 }  // namespace
 
-vk::AccelerationStructureBuildGeometryInfoKHR BuildInput::info() const {
-  return {.type = type,
-          .flags = vk::BuildAccelerationStructureFlagBitsKHR::ePreferFastTrace,
-          .mode = vk::BuildAccelerationStructureModeKHR::eBuild,
-          .geometryCount = static_cast<std::uint32_t>(geometries.size()),
-          .pGeometries = geometries.data()};
-}
-
-BuildInput build_input(const rhi::BottomLevelDesc& desc, const ContextHandle& context, const std::string& label) {
-  BuildInput input;
-  for (const rhi::Geometry& geometry : desc.geometries) {
-    if (const auto* triangles = std::get_if<rhi::TriangleGeometry>(&geometry))
-      add(*triangles, input, context, label);
-    else
-      throw rhi::Error(rhi::ErrorCode::unsupported, label, "this device builds no boxes");
-  }
-  return input;
-}
-
-BuildInput build_input(const rhi::TopLevelDesc& desc, const ContextHandle& context, const std::string& label) {
-  BuildInput input;
-  input.type = vk::AccelerationStructureTypeKHR::eTopLevel;
-  const vk::AccelerationStructureGeometryInstancesDataKHR data = {
-      .data = {.deviceAddress = address_of(desc.instances, input, context, label)}};
-  input.geometries.push_back({.geometryType = vk::GeometryTypeKHR::eInstances, .geometry = {.instances = data}});
-  input.ranges.push_back({.primitiveCount = desc.instance_count});
-  return input;
-}
-
 AccelerationStructure::AccelerationStructure(ContextHandle context, const rhi::BottomLevelDesc& desc)
     : rhi::AccelerationStructure(Level::bottom, desc.label),
       context_(std::move(context)),
+      type_(vk::AccelerationStructureTypeKHR::eBottomLevel),
       bottom_level_desc_(without_inputs(desc)) {
   create(build_input(desc, context_, desc.label));
 }
 
 AccelerationStructure::AccelerationStructure(ContextHandle context, const rhi::TopLevelDesc& desc)
-    : rhi::AccelerationStructure(Level::top, desc.label), context_(std::move(context)) {
+    : rhi::AccelerationStructure(Level::top, desc.label),
+      context_(std::move(context)),
+      type_(vk::AccelerationStructureTypeKHR::eTopLevel) {
   top_level_desc_.instance_count = desc.instance_count;
+  top_level_desc_.flags = desc.flags;
   create(build_input(desc, context_, desc.label));
 }
 
+AccelerationStructure::AccelerationStructure(const AccelerationStructure& source, std::uint64_t size, std::string label)
+    : rhi::AccelerationStructure(source.level(), std::move(label)),
+      context_(source.context_),
+      type_(source.type_),
+      bottom_level_desc_(source.bottom_level_desc_),
+      top_level_desc_(source.top_level_desc_),
+      is_compacted_(true),
+      sizes_(source.sizes_),
+      built_instance_count_(source.built_instance_count_.load()) {
+  allocate(size);
+}
+
+rhi::BuildFlags AccelerationStructure::flags() const noexcept {
+  return level() == Level::bottom ? bottom_level_desc_.flags : top_level_desc_.flags;
+}
+
+std::optional<std::uint32_t> AccelerationStructure::built_instance_count() const noexcept {
+  const std::int64_t count = built_instance_count_;
+  if (count == never_built) return std::nullopt;
+  return static_cast<std::uint32_t>(count);
+}
+
 void AccelerationStructure::create(const BuildInput& input) {
+  std::vector<std::uint32_t> primitive_counts;
+  for (const vk::AccelerationStructureBuildRangeInfoKHR& range : input.ranges)
+    primitive_counts.push_back(range.primitiveCount);
+  const vk::AccelerationStructureBuildSizesInfoKHR sizes = context_->device.getAccelerationStructureBuildSizesKHR(
+      vk::AccelerationStructureBuildTypeKHR::eDevice, input.info(), primitive_counts);
+  sizes_.build_scratch = sizes.buildScratchSize;
+  if (has(flags(), rhi::BuildFlags::allow_update)) sizes_.update_scratch = sizes.updateScratchSize;
+  allocate(sizes.accelerationStructureSize);
+}
+
+void AccelerationStructure::allocate(std::uint64_t size) {
   using Usage = vk::BufferUsageFlagBits;
   translating_errors(label(), "create the acceleration structure", [&] {
-    std::vector<std::uint32_t> primitive_counts;
-    for (const vk::AccelerationStructureBuildRangeInfoKHR& range : input.ranges)
-      primitive_counts.push_back(range.primitiveCount);
-    const vk::AccelerationStructureBuildSizesInfoKHR sizes = context_->device.getAccelerationStructureBuildSizesKHR(
-        vk::AccelerationStructureBuildTypeKHR::eDevice, input.info(), primitive_counts);
-    scratch_size_ = std::max<std::uint64_t>(sizes.buildScratchSize, 1);
-    buffer_ = make_backed_buffer(*context_, sizes.accelerationStructureSize,
-                                 Usage::eAccelerationStructureStorageKHR | Usage::eShaderDeviceAddress,
+    sizes_.structure = size;
+    buffer_ = make_backed_buffer(*context_, size, Usage::eAccelerationStructureStorageKHR | Usage::eShaderDeviceAddress,
                                  MemoryKind::device, label());
-    structure_ = context_->device.createAccelerationStructureKHR(
-        {.buffer = *buffer_.handle, .size = sizes.accelerationStructureSize, .type = input.type});
+    structure_ =
+        context_->device.createAccelerationStructureKHR({.buffer = *buffer_.handle, .size = size, .type = type_});
     context_->name(structure_, label());
     address_ = context_->device.getAccelerationStructureAddressKHR({.accelerationStructure = *structure_});
+  });
+}
+
+rhi::AccelerationStructureHandle make_compacted(const rhi::AccelerationStructureHandle& handle,
+                                                const AccelerationStructure& source, const std::string& label) {
+  Context& context = *source.context();
+  if (!source.built_instance_count())
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label,
+                     "the structure '" + source.label() + "', to be compacted, was never built");
+  return translating_errors(label, "compact the acceleration structure", [&] {
+    struct InFlight {
+      rhi::AccelerationStructureHandle source;
+      vk::raii::QueryPool pool;
+    };
+    const auto in_flight = std::make_shared<InFlight>(
+        InFlight{handle, context.device.createQueryPool(
+                             {.queryType = vk::QueryType::eAccelerationStructureCompactedSizeKHR, .queryCount = 1})});
+    const vk::QueryPool pool = *in_flight->pool;
+    context.queue.wait(submit_commands(context, label, in_flight, [&](const vk::raii::CommandBuffer& commands) {
+      commands.resetQueryPool(pool, 0, 1);
+      commands.writeAccelerationStructuresPropertiesKHR(source.handle(),
+                                                        vk::QueryType::eAccelerationStructureCompactedSizeKHR, pool, 0);
+    }));
+    const std::uint64_t size =
+        in_flight->pool.getResult<std::uint64_t>(0, 1, sizeof(std::uint64_t), vk::QueryResultFlagBits::e64).second;
+
+    auto copy = std::make_shared<AccelerationStructure>(source, size, label);
+    const auto both =
+        std::make_shared<std::pair<rhi::AccelerationStructureHandle, rhi::AccelerationStructureHandle>>(handle, copy);
+    context.queue.wait(submit_commands(context, label, both, [&](const vk::raii::CommandBuffer& commands) {
+      commands.copyAccelerationStructureKHR(
+          {.src = source.handle(), .dst = copy->handle(), .mode = vk::CopyAccelerationStructureModeKHR::eCompact});
+    }));
+    return copy;
   });
 }
 

@@ -62,7 +62,8 @@ void BindGroup::write() const {
       write.pBufferInfo = &buffers[i];
     } else {
       const auto& structure = std::get<rhi::AccelerationStructureHandle>(entry.resource);
-      structures[i] = own<AccelerationStructure>(structure, context_, label(), "acceleration structure").handle();
+      if (structure != nullptr)
+        structures[i] = own<AccelerationStructure>(structure, context_, label(), "acceleration structure").handle();
       structure_writes[i] = vk::WriteDescriptorSetAccelerationStructureKHR{.accelerationStructureCount = 1,
                                                                            .pAccelerationStructures = &structures[i]};
       write.pNext = &structure_writes[i];

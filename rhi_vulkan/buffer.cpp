@@ -1,5 +1,6 @@
 #include "rhi_vulkan/buffer.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tandem::vulkan {
@@ -16,8 +17,16 @@ vk::BufferUsageFlags usage_flags(rhi::BufferUsage usage) {
   if (has(usage, rhi::BufferUsage::uniform)) flags |= Usage::eUniformBuffer;
   if (has(usage, rhi::BufferUsage::acceleration_structure_input))
     flags |= Usage::eAccelerationStructureBuildInputReadOnlyKHR;
-  if (is_addressable(usage)) flags |= Usage::eShaderDeviceAddress;
+  if (has(usage, rhi::BufferUsage::indirect)) flags |= Usage::eIndirectBuffer;
+  if (is_addressable(usage) || has(usage, rhi::BufferUsage::indirect)) flags |= Usage::eShaderDeviceAddress;
   return flags;
+}
+
+/// A position of three 16-bit components is given to Vulkan as four, so a build may read two bytes beyond the last.
+std::uint64_t padded_size(const rhi::BufferDesc& desc) {
+  constexpr std::uint64_t fourth_component = 2;
+  const bool is_input = has(desc.usage, rhi::BufferUsage::acceleration_structure_input);
+  return is_input ? std::max(desc.size, desc.size + fourth_component) : desc.size;
 }
 
 MemoryAllocation allocate(Context& context, const vk::MemoryRequirements& requirements, MemoryKind kind) {
@@ -56,13 +65,16 @@ std::uint64_t device_address(const Context& context, const BackedBuffer& buffer)
 Buffer::Buffer(ContextHandle context, const rhi::BufferDesc& desc)
     : rhi::Buffer(desc),
       context_(std::move(context)),
-      buffer_(make_backed_buffer(*context_, desc.size, usage_flags(desc.usage), MemoryKind::device, desc.label)) {}
+      buffer_(
+          make_backed_buffer(*context_, padded_size(desc), usage_flags(desc.usage), MemoryKind::device, desc.label)) {}
 
 std::uint64_t Buffer::device_address() const {
   if (!is_addressable(desc().usage))
     throw rhi::Error(rhi::ErrorCode::invalid_argument, desc().label,
                      "device_address() needs the usage device_address or acceleration_structure_input");
-  return vulkan::device_address(*context_, buffer_);
+  return address();
 }
+
+std::uint64_t Buffer::address() const { return vulkan::device_address(*context_, buffer_); }
 
 }  // namespace tandem::vulkan

@@ -25,6 +25,8 @@ class Buffer final : public rhi::Buffer {
   std::uint64_t device_address() const override;
   const ContextHandle& context() const noexcept { return context_; }
   vk::Buffer handle() const { return *buffer_.handle; }
+  /// device_address(), which the usage indirect has too.
+  std::uint64_t address() const;
 
  private:
   ContextHandle context_;

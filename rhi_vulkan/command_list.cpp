@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
+#include <type_traits>
 
 #include "rhi/validation.hpp"
 #include "rhi_vulkan/bind_group.hpp"
@@ -88,37 +90,66 @@ void CommandList::fill(const rhi::BufferRange& range, std::uint32_t value) {
 
 void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& structure,
                                      const rhi::BottomLevelDesc& desc) {
-  recording();
-  rhi::validation::check(desc, context_->physical.info);
-  if (structure == nullptr) rhi::validation::check_build(*this, structure, rhi::BottomLevelDesc(), desc);
-  auto& target = own<AccelerationStructure>(structure, context_, label(), "acceleration structure");
-  rhi::validation::check_build(*this, structure, target.bottom_level_desc(), desc);
-  build(structure, target, build_input(desc, context_, target.label()), CommandKind::bottom_level_build);
+  build(structure, desc, vk::BuildAccelerationStructureModeKHR::eBuild);
+}
+
+void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle& structure,
+                                      const rhi::BottomLevelDesc& desc) {
+  build(structure, desc, vk::BuildAccelerationStructureModeKHR::eUpdate);
 }
 
 void CommandList::build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
-  recording();
-  rhi::validation::check(desc, context_->physical.info);
-  if (structure == nullptr) rhi::validation::check_build(*this, structure, rhi::TopLevelDesc(), desc);
-  auto& target = own<AccelerationStructure>(structure, context_, label(), "acceleration structure");
-  rhi::validation::check_build(*this, structure, target.top_level_desc(), desc);
-  build(structure, target, build_input(desc, context_, target.label()), CommandKind::exclusive);
+  build(structure, desc, vk::BuildAccelerationStructureModeKHR::eBuild);
 }
 
-void CommandList::build(const rhi::AccelerationStructureHandle& handle, AccelerationStructure& structure,
-                        const BuildInput& input, CommandKind kind) {
-  Recording& recording = *recording_;
-  if (recording.scratch.used() + structure.scratch_size() > most_scratch) dependencies_.require_barrier();
-  order(kind, std::array{Access{&structure, 0, 1, true}});
+void CommandList::update_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
+  build(structure, desc, vk::BuildAccelerationStructureModeKHR::eUpdate);
+}
+
+template <typename Desc>
+void CommandList::build(const rhi::AccelerationStructureHandle& handle, const Desc& desc,
+                        vk::BuildAccelerationStructureModeKHR mode) {
+  constexpr bool is_bottom_level = std::is_same_v<Desc, rhi::BottomLevelDesc>;
+  const bool updates = mode == vk::BuildAccelerationStructureModeKHR::eUpdate;
+  const auto check_against = [&](const Desc& created_from) {
+    if (updates)
+      rhi::validation::check_update(*this, handle, created_from, desc);
+    else
+      rhi::validation::check_build(*this, handle, created_from, desc);
+  };
+  Recording& recording = this->recording();
+  rhi::validation::check(desc, context_->physical.info);
+  if (handle == nullptr) check_against(Desc());
+  auto& structure = own<AccelerationStructure>(handle, context_, label(), "acceleration structure");
+  if constexpr (is_bottom_level)
+    check_against(structure.bottom_level_desc());
+  else
+    check_against(structure.top_level_desc());
+  if (!updates && structure.is_compacted())
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, structure.label(),
+                     "a compacted copy has no room for a build, only for an update");
+
+  const BuildInput input = build_input(desc, context_, structure.label());
+  const std::uint64_t scratch_size =
+      std::max<std::uint64_t>(updates ? structure.sizes().update_scratch : structure.sizes().build_scratch, 1);
+  if (recording.scratch.used() + scratch_size > most_scratch) dependencies_.require_barrier();
+  // A top level refers to bottom levels by address, so nobody knows what it touches.
+  order(is_bottom_level ? CommandKind::bottom_level_build : CommandKind::exclusive,
+        std::array{Access{&structure, 0, 1, true}});
   const TransientMemory::Piece scratch =
-      recording.scratch.allocate(*context_, structure.scratch_size(), context_->physical.scratch_alignment);
+      recording.scratch.allocate(*context_, scratch_size, context_->physical.scratch_alignment);
   recording.resources.push_back(handle);
   recording.resources.insert(recording.resources.end(), input.buffers.begin(), input.buffers.end());
   vk::AccelerationStructureBuildGeometryInfoKHR info = input.info();
+  info.mode = mode;
+  if (updates) info.srcAccelerationStructure = structure.handle();
   info.dstAccelerationStructure = structure.handle();
   info.scratchData.deviceAddress = scratch.device_address;
   const vk::AccelerationStructureBuildRangeInfoKHR* const ranges = input.ranges.data();
   recording.commands.handle.buildAccelerationStructuresKHR(info, ranges);
+  std::uint32_t instance_count = 0;
+  if constexpr (!is_bottom_level) instance_count = desc.instance_count;
+  builds_.push_back({std::static_pointer_cast<AccelerationStructure>(handle), instance_count, updates});
 }
 
 void CommandList::dispatch(const rhi::DispatchDesc& desc) {
@@ -161,22 +192,27 @@ void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_
 
 std::uint64_t CommandList::submit() {
   Recording& recording = this->recording();
+  for (const Build& build : builds_) {
+    const std::optional<std::uint32_t> built = build.structure->built_instance_count();
+    if (!build.updates)
+      build.structure->mark_built(build.instance_count);
+    else if (!built)
+      throw rhi::Error(rhi::ErrorCode::invalid_argument, build.structure->label(),
+                       "it is updated, but was never built");
+    else if (*built != build.instance_count)
+      throw rhi::Error(rhi::ErrorCode::invalid_argument, build.structure->label(),
+                       "an update with " + std::to_string(build.instance_count) +
+                           " instances of a structure built with " + std::to_string(*built));
+  }
   return translating_errors(label(), "submit the command list", [&] {
     recording.commands.handle.end();
     const vk::CommandBuffer commands = *recording.commands.handle;
     const std::uint64_t number = context_->queue.submit(commands, std::exchange(recording_, nullptr));
     for (const auto& [pool, index] : timestamps_) pool->mark_submitted(index);
     timestamps_.clear();
+    builds_.clear();
     return number;
   });
-}
-
-void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle&, const rhi::BottomLevelDesc&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
-}
-
-void CommandList::update_top_level(const rhi::AccelerationStructureHandle&, const rhi::TopLevelDesc&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
 }
 
 void CommandList::copy_to_texture(const rhi::BufferRange&, const rhi::TextureHandle&) {

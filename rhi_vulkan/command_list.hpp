@@ -47,17 +47,25 @@ class CommandList final : public rhi::CommandList {
     std::vector<std::shared_ptr<const void>> resources;
   };
 
+  struct Build {
+    std::shared_ptr<AccelerationStructure> structure;
+    std::uint32_t instance_count;  ///< of a top level
+    bool updates;
+  };
+
   /// Throws rhi::Error(invalid_argument) once the list was submitted.
   Recording& recording();
   /// A barrier where the command that follows needs one.
   void order(CommandKind kind, std::span<const Access> accesses);
-  void build(const rhi::AccelerationStructureHandle& handle, AccelerationStructure& structure, const BuildInput& input,
-             CommandKind kind);
+  template <typename Desc>
+  void build(const rhi::AccelerationStructureHandle& handle, const Desc& desc,
+             vk::BuildAccelerationStructureModeKHR mode);
 
   ContextHandle context_;
   std::shared_ptr<Recording> recording_;  // empty once submitted
   DependencyTracker dependencies_;
   std::vector<std::pair<std::shared_ptr<QueryPool>, std::uint32_t>> timestamps_;
+  std::vector<Build> builds_;  // checked when the list is submitted: only then is it known what was built before
 };
 
 }  // namespace tandem::vulkan

@@ -6,14 +6,25 @@ namespace tandem::vulkan {
 namespace {
 
 vk::raii::Device make_device(const PhysicalDevice& physical) {
+  const EnabledFeatures& enabled = physical.features;
+  vk::PhysicalDeviceAccelerationStructureFeaturesKHR acceleration_structure = {.accelerationStructure = VK_TRUE};
   vk::PhysicalDeviceRayQueryFeaturesKHR ray_query = {.rayQuery = VK_TRUE};
-  vk::PhysicalDeviceAccelerationStructureFeaturesKHR acceleration_structure = {
-      .pNext = physical.features.ray_query ? &ray_query : nullptr, .accelerationStructure = VK_TRUE};
-  vk::PhysicalDeviceVulkan12Features vulkan12 = physical.features.vulkan12;
+  vk::PhysicalDeviceRayTracingPipelineFeaturesKHR pipeline = {
+      .rayTracingPipeline = VK_TRUE,
+      .rayTracingPipelineTraceRaysIndirect = enabled.trace_rays_indirect,
+      .rayTraversalPrimitiveCulling = enabled.primitive_culling};
+  vk::PhysicalDeviceRobustness2FeaturesEXT robustness = {.nullDescriptor = VK_TRUE};
+  const auto chain = [&acceleration_structure](auto& features) {
+    features.pNext = std::exchange(acceleration_structure.pNext, &features);
+  };
+  if (enabled.ray_query) chain(ray_query);
+  if (enabled.ray_tracing_pipeline) chain(pipeline);
+  if (enabled.null_descriptor) chain(robustness);
+  vk::PhysicalDeviceVulkan12Features vulkan12 = enabled.vulkan12;
   vulkan12.pNext = &acceleration_structure;
-  vk::PhysicalDeviceVulkan11Features vulkan11 = physical.features.vulkan11;
+  vk::PhysicalDeviceVulkan11Features vulkan11 = enabled.vulkan11;
   vulkan11.pNext = &vulkan12;
-  const vk::PhysicalDeviceFeatures2 features = {.pNext = &vulkan11, .features = physical.features.core};
+  const vk::PhysicalDeviceFeatures2 features = {.pNext = &vulkan11, .features = enabled.core};
 
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue = {

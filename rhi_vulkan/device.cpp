@@ -56,9 +56,12 @@ class Device final : public rhi::Device {
     return std::make_shared<ComputePipeline>(context_, desc);
   }
 
-  rhi::AccelerationStructureHandle create_compacted(const rhi::AccelerationStructureHandle&,
+  rhi::AccelerationStructureHandle create_compacted(const rhi::AccelerationStructureHandle& source,
                                                     std::string label) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, label, "compaction is not supported yet");
+    if (source == nullptr) rhi::validation::check_compaction(source, rhi::BuildFlags::none, label);
+    const auto& original = own<AccelerationStructure>(source, context_, label, "acceleration structure");
+    rhi::validation::check_compaction(source, original.flags(), label);
+    return make_compacted(source, original, label);
   }
 
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
@@ -114,23 +117,14 @@ class Device final : public rhi::Device {
   }
 
  private:
-  struct DownloadInFlight {
-    CommandBuffer commands;
-    rhi::BufferHandle buffer;
-    std::shared_ptr<BackedBuffer> staging;
-  };
-
   void copy_to_host(const Buffer& source, const rhi::BufferHandle& buffer, std::uint64_t offset,
                     const std::shared_ptr<BackedBuffer>& staging, std::uint64_t size, const std::string& label) {
     translating_errors(label, "copy from the device", [&] {
-      const auto in_flight =
-          std::make_shared<DownloadInFlight>(DownloadInFlight{begin_command_buffer(*context_, label), buffer, staging});
-      const vk::raii::CommandBuffer& commands = in_flight->commands.handle;
-      full_barrier(commands);
-      commands.copyBuffer(source.handle(), *staging->handle, vk::BufferCopy{.srcOffset = offset, .size = size});
-      host_read_barrier(commands);
-      commands.end();
-      context_->queue.wait(context_->queue.submit(*commands, in_flight));
+      const auto both = std::make_shared<std::pair<rhi::BufferHandle, std::shared_ptr<BackedBuffer>>>(buffer, staging);
+      context_->queue.wait(submit_commands(*context_, label, both, [&](const vk::raii::CommandBuffer& commands) {
+        commands.copyBuffer(source.handle(), *staging->handle, vk::BufferCopy{.srcOffset = offset, .size = size});
+        host_read_barrier(commands);
+      }));
     });
   }
 

@@ -51,13 +51,17 @@ std::optional<std::uint32_t> compute_queue_family(const std::vector<vk::QueueFam
 
 /// Members of `offered` that Tandem has a use for; everything else stays off.
 EnabledFeatures choose_features(const vk::PhysicalDeviceFeatures& core, const vk::PhysicalDeviceVulkan11Features& v11,
-                                const vk::PhysicalDeviceVulkan12Features& v12, bool ray_query) {
+                                const vk::PhysicalDeviceVulkan12Features& v12) {
   EnabledFeatures enabled;
   enabled.core.shaderInt16 = core.shaderInt16;
   enabled.core.shaderInt64 = core.shaderInt64;
   enabled.core.shaderFloat64 = core.shaderFloat64;
   enabled.core.shaderStorageBufferArrayDynamicIndexing = core.shaderStorageBufferArrayDynamicIndexing;
   enabled.core.shaderUniformBufferArrayDynamicIndexing = core.shaderUniformBufferArrayDynamicIndexing;
+  enabled.core.shaderStorageImageArrayDynamicIndexing = core.shaderStorageImageArrayDynamicIndexing;
+  enabled.core.shaderStorageImageExtendedFormats = core.shaderStorageImageExtendedFormats;
+  enabled.core.shaderStorageImageReadWithoutFormat = core.shaderStorageImageReadWithoutFormat;
+  enabled.core.shaderStorageImageWriteWithoutFormat = core.shaderStorageImageWriteWithoutFormat;
   enabled.vulkan11.storageBuffer16BitAccess = v11.storageBuffer16BitAccess;
   enabled.vulkan11.uniformAndStorageBuffer16BitAccess = v11.uniformAndStorageBuffer16BitAccess;
   enabled.vulkan12.timelineSemaphore = v12.timelineSemaphore;
@@ -71,10 +75,62 @@ EnabledFeatures choose_features(const vk::PhysicalDeviceFeatures& core, const vk
   enabled.vulkan12.shaderSharedInt64Atomics = v12.shaderSharedInt64Atomics;
   enabled.vulkan12.shaderStorageBufferArrayNonUniformIndexing = v12.shaderStorageBufferArrayNonUniformIndexing;
   enabled.vulkan12.shaderUniformBufferArrayNonUniformIndexing = v12.shaderUniformBufferArrayNonUniformIndexing;
+  enabled.vulkan12.shaderStorageImageArrayNonUniformIndexing = v12.shaderStorageImageArrayNonUniformIndexing;
   enabled.vulkan12.vulkanMemoryModel = v12.vulkanMemoryModel;
   enabled.vulkan12.vulkanMemoryModelDeviceScope = v12.vulkanMemoryModelDeviceScope;
-  enabled.ray_query = ray_query;
   return enabled;
+}
+
+/// The features of extensions. A structure is only asked for where its extension is offered: a driver need not know it
+/// otherwise.
+void choose_extensions(const vk::raii::PhysicalDevice& handle, const OfferedExtensions& offered,
+                       EnabledFeatures& enabled) {
+  if (offers(offered, VK_KHR_RAY_QUERY_EXTENSION_NAME)) {
+    enabled.ray_query = handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayQueryFeaturesKHR>()
+                            .get<vk::PhysicalDeviceRayQueryFeaturesKHR>()
+                            .rayQuery;
+  }
+  if (offers(offered, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) {
+    const auto pipeline =
+        handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>()
+            .get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
+    enabled.ray_tracing_pipeline = pipeline.rayTracingPipeline;
+    enabled.trace_rays_indirect = pipeline.rayTracingPipeline && pipeline.rayTracingPipelineTraceRaysIndirect;
+    enabled.primitive_culling = pipeline.rayTracingPipeline && pipeline.rayTraversalPrimitiveCulling;
+  }
+  if (offers(offered, VK_EXT_ROBUSTNESS_2_EXTENSION_NAME)) {
+    enabled.null_descriptor =
+        handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRobustness2FeaturesEXT>()
+            .get<vk::PhysicalDeviceRobustness2FeaturesEXT>()
+            .nullDescriptor;
+  }
+}
+
+std::vector<const char*> extensions_of(const EnabledFeatures& enabled) {
+  std::vector<const char*> extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                         VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+  if (enabled.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+  if (enabled.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+  if (enabled.null_descriptor) extensions.push_back(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME);
+  return extensions;
+}
+
+rhi::Capabilities capabilities_of(const EnabledFeatures& enabled) {
+  rhi::Capabilities capabilities;
+  capabilities.ray_query = enabled.ray_query;
+  capabilities.ray_tracing_pipeline = enabled.ray_tracing_pipeline;
+  capabilities.trace_rays_indirect = enabled.trace_rays_indirect;
+  capabilities.primitive_culling = enabled.primitive_culling;
+  capabilities.null_acceleration_structure = enabled.null_descriptor;
+  capabilities.buffer_references = enabled.vulkan12.bufferDeviceAddress;
+  // Arrays of acceleration structures need no feature of their own.
+  capabilities.non_uniform_indexing = enabled.vulkan12.shaderStorageBufferArrayNonUniformIndexing &&
+                                      enabled.vulkan12.shaderUniformBufferArrayNonUniformIndexing &&
+                                      enabled.vulkan12.shaderStorageImageArrayNonUniformIndexing;
+  capabilities.scalar_block_layout = enabled.vulkan12.scalarBlockLayout;
+  capabilities.shader_int64 = enabled.core.shaderInt64;
+  capabilities.shader_float64 = enabled.core.shaderFloat64;
+  return capabilities;
 }
 
 rhi::Limits limits_of(const vk::PhysicalDeviceLimits& core,
@@ -96,7 +152,25 @@ rhi::Limits limits_of(const vk::PhysicalDeviceLimits& core,
   limits.max_geometry_count = acceleration.maxGeometryCount;
   limits.max_primitive_count = acceleration.maxPrimitiveCount;
   limits.max_instance_count = std::min<std::uint64_t>(acceleration.maxInstanceCount, most_instances);
+  limits.max_texture_size = {core.maxImageDimension1D, core.maxImageDimension2D, core.maxImageDimension3D,
+                             core.maxImageDimension2D};
+  limits.max_texture_layers = core.maxImageArrayLayers;
   return limits;
+}
+
+/// What only devices with VK_KHR_ray_tracing_pipeline say.
+void add_ray_tracing_pipeline_limits(PhysicalDevice& device) {
+  const auto pipeline =
+      device.handle.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>()
+          .get<vk::PhysicalDeviceRayTracingPipelinePropertiesKHR>();
+  device.shader_table_alignment = pipeline.shaderGroupBaseAlignment;
+  rhi::Limits& limits = device.info.limits;
+  limits.max_ray_recursion_depth = pipeline.maxRayRecursionDepth;
+  limits.max_ray_invocations = pipeline.maxRayDispatchInvocationCount;
+  limits.shader_record_alignment = pipeline.shaderGroupHandleAlignment;
+  limits.max_shader_record_stride = pipeline.maxShaderGroupStride;
+  limits.shader_handle_size = pipeline.shaderGroupHandleSize;
+  limits.max_hit_attribute_size = pipeline.maxRayHitAttributeSize;
 }
 
 /// The device, or why it does not qualify.
@@ -128,17 +202,6 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   const std::optional<std::uint32_t> family = compute_queue_family(families);
   if (!family) return refuse("has no queue that computes");
 
-  // Only asked where the extension is offered: a driver need not know the structure otherwise.
-  const bool ray_query = offers(offered, VK_KHR_RAY_QUERY_EXTENSION_NAME) &&
-                         handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayQueryFeaturesKHR>()
-                             .get<vk::PhysicalDeviceRayQueryFeaturesKHR>()
-                             .rayQuery;
-  const bool ray_tracing_pipeline =
-      offers(offered, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME) &&
-      handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>()
-          .get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>()
-          .rayTracingPipeline;
-
   const auto properties =
       handle
           .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
@@ -150,14 +213,15 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   PhysicalDevice device;
   device.handle = std::move(handle);
   device.features = choose_features(features.get<vk::PhysicalDeviceFeatures2>().features,
-                                    features.get<vk::PhysicalDeviceVulkan11Features>(), vulkan12, ray_query);
-  device.extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-  if (ray_query) device.extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+                                    features.get<vk::PhysicalDeviceVulkan11Features>(), vulkan12);
+  choose_extensions(device.handle, offered, device.features);
+  device.extensions = extensions_of(device.features);
   device.queue_family = *family;
   device.timestamp_valid_bits = families[*family].timestampValidBits;
   device.timestamp_period = core_properties.limits.timestampPeriod;
   device.scratch_alignment = acceleration.minAccelerationStructureScratchOffsetAlignment;
   device.max_allocation_size = vulkan11_properties.maxMemoryAllocationSize;
+  device.buffer_image_granularity = core_properties.limits.bufferImageGranularity;
   if (vulkan11_properties.subgroupSupportedStages & vk::ShaderStageFlagBits::eCompute)
     device.subgroup_operations = vulkan11_properties.subgroupSupportedOperations;
 
@@ -167,13 +231,10 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   info.driver = std::string(vulkan12_properties.driverName.data()) + " " + vulkan12_properties.driverInfo.data();
   info.api = "Vulkan " + version_text(core_properties.apiVersion);
   info.kind = kind_of(core_properties.deviceType);
-  info.capabilities.ray_query = ray_query;
-  info.capabilities.ray_tracing_pipeline = ray_tracing_pipeline;
-  info.capabilities.scalar_block_layout = vulkan12.scalarBlockLayout;
-  info.capabilities.shader_int64 = device.features.core.shaderInt64;
-  info.capabilities.shader_float64 = device.features.core.shaderFloat64;
+  info.capabilities = capabilities_of(device.features);
   info.capabilities.timestamps = device.timestamp_valid_bits > 0;
   info.limits = limits_of(core_properties.limits, acceleration);
+  if (device.features.ray_tracing_pipeline) add_ray_tracing_pipeline_limits(device);
   return device;
 }
 

@@ -16,6 +16,10 @@ struct EnabledFeatures {
   vk::PhysicalDeviceVulkan11Features vulkan11;
   vk::PhysicalDeviceVulkan12Features vulkan12;
   bool ray_query = false;
+  bool ray_tracing_pipeline = false;
+  bool trace_rays_indirect = false;  ///< rayTracingPipelineTraceRaysIndirect
+  bool primitive_culling = false;    ///< rayTraversalPrimitiveCulling
+  bool null_descriptor = false;      ///< VK_EXT_robustness2
 };
 
 /// A physical device that qualifies, and what creating a logical one from it takes.
@@ -29,6 +33,8 @@ struct PhysicalDevice {
   double timestamp_period = 1;                   ///< nanoseconds in a tick
   std::uint64_t scratch_alignment = 1;           ///< of the scratch memory of a build
   std::uint64_t max_allocation_size = 0;         ///< of one vkAllocateMemory
+  std::uint64_t buffer_image_granularity = 1;    ///< a page of memory that holds images holds no buffers
+  std::uint32_t shader_table_alignment = 1;      ///< of the address at which the records of a trace begin
   vk::SubgroupFeatureFlags subgroup_operations;  ///< that compute shaders may use
 };
 

@@ -37,6 +37,10 @@ template <vk::SubgroupFeatureFlagBits operation>
 constexpr auto subgroup = [](const PhysicalDevice& device) { return bool(device.subgroup_operations & operation); };
 
 constexpr auto ray_query = [](const PhysicalDevice& device) { return device.features.ray_query; };
+constexpr auto ray_tracing_pipeline = [](const PhysicalDevice& device) { return device.features.ray_tracing_pipeline; };
+constexpr auto primitive_culling = [](const PhysicalDevice& device) {
+  return device.features.ray_query || device.features.primitive_culling;
+};
 
 using Core = vk::PhysicalDeviceFeatures;
 using V11 = vk::PhysicalDeviceVulkan11Features;
@@ -67,6 +71,16 @@ constexpr std::array rules = {
          core<&Core::shaderStorageBufferArrayDynamicIndexing>},
     Rule{Capability::UniformBufferArrayDynamicIndexing, "UniformBufferArrayDynamicIndexing",
          core<&Core::shaderUniformBufferArrayDynamicIndexing>},
+    Rule{Capability::StorageImageArrayDynamicIndexing, "StorageImageArrayDynamicIndexing",
+         core<&Core::shaderStorageImageArrayDynamicIndexing>},
+    Rule{Capability::StorageImageArrayNonUniformIndexing, "StorageImageArrayNonUniformIndexing",
+         vulkan12<&V12::shaderStorageImageArrayNonUniformIndexing>},
+    Rule{Capability::StorageImageExtendedFormats, "StorageImageExtendedFormats",
+         core<&Core::shaderStorageImageExtendedFormats>},
+    Rule{Capability::StorageImageReadWithoutFormat, "StorageImageReadWithoutFormat",
+         core<&Core::shaderStorageImageReadWithoutFormat>},
+    Rule{Capability::StorageImageWriteWithoutFormat, "StorageImageWriteWithoutFormat",
+         core<&Core::shaderStorageImageWriteWithoutFormat>},
     Rule{Capability::ShaderNonUniform, "ShaderNonUniform", always},
     Rule{Capability::StorageBufferArrayNonUniformIndexing, "StorageBufferArrayNonUniformIndexing",
          vulkan12<&V12::shaderStorageBufferArrayNonUniformIndexing>},
@@ -87,8 +101,8 @@ constexpr std::array rules = {
     Rule{Capability::GroupNonUniformClustered, "GroupNonUniformClustered", subgroup<Subgroup::eClustered>},
     Rule{Capability::GroupNonUniformQuad, "GroupNonUniformQuad", subgroup<Subgroup::eQuad>},
     Rule{Capability::RayQueryKHR, "RayQueryKHR", ray_query},
-    Rule{Capability::RayTraversalPrimitiveCullingKHR, "RayTraversalPrimitiveCullingKHR", ray_query},
-    Rule{Capability::RayTracingKHR, "RayTracingKHR", [](const PhysicalDevice&) { return false; }},
+    Rule{Capability::RayTraversalPrimitiveCullingKHR, "RayTraversalPrimitiveCullingKHR", primitive_culling},
+    Rule{Capability::RayTracingKHR, "RayTracingKHR", ray_tracing_pipeline},
 };
 
 void check_capability(Capability capability, const PhysicalDevice& device, std::string_view label) {
