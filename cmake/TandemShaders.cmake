@@ -7,9 +7,11 @@ list(TRANSFORM TANDEM_KERNEL_OPTIONS REPLACE "^ *\"([^\"]*)\".*" "\\1")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
                                        "${CMAKE_CURRENT_LIST_DIR}/../rhi_cpu/translate/compile_options.hpp")
 
-# tandem_add_shaders(NAME SOURCES a.comp ... [INCLUDE_DIRECTORIES ...])
+# tandem_add_shaders(NAME SOURCES a.comp b.rgen ... [INCLUDE_DIRECTORIES ...])
 #
-# For each source (relative to the current directory) the function of its name without extension, e.g. render.comp:
+# Sources are compute shaders (.comp) and the stages of ray tracing pipelines (.rgen .rmiss .rchit .rahit .rint .rcall).
+# For each (relative to the current directory) the function of its name without extension, e.g. render.comp, and with the
+# extension for a ray tracing stage, which shares its name with the others of its pipeline: trace.rgen is trace_rgen.
 #   tandem_NAME (alias Tandem::NAME), header "NAME/spirv.hpp":
 #     namespace tandem::NAME { std::span<const std::uint32_t> render(); }   the SPIR-V, for every backend
 #   tandem_NAME_kernels (alias Tandem::NAME_kernels), header "NAME/kernels.hpp":
@@ -33,6 +35,10 @@ function(tandem_add_shaders name)
   set(kernel_entries)
   foreach(source IN LISTS shaders_SOURCES)
     cmake_path(GET source STEM shader)
+    cmake_path(GET source EXTENSION LAST_ONLY stage)
+    if(NOT stage STREQUAL ".comp")
+      string(APPEND shader "${stage}")
+    endif()
     string(MAKE_C_IDENTIFIER "${shader}" shader)
     cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}" NORMALIZE OUTPUT_VARIABLE path)
     set(spirv "${folder}/${shader}.spv")
