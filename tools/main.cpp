@@ -26,14 +26,16 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "tandem " TANDEM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit code: 0 success, or the images agree; 1 the images differ (tandem diff); 2 any error, with one sentence\n"
-      "on standard error; 130 interrupted. 'tandem COMMAND --help' explains a command.");
+      "Exit code: 0 success, or the images agree; 1 the images differ (tandem diff) or a device fails\n"
+      "(tandem conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
+      "'tandem COMMAND --help' explains a command.");
   Action action;
   add_devices_command(app, action);
   add_render_command(app, action);
   add_diff_command(app, action);
   add_generate_command(app, action);
   add_bench_command(app, action);
+  add_conformance_command(app, action);
   const char* const hint = "'tandem --help' lists the commands";
   if (argc < 2) return fail(fmt::format("a command is required; {}", hint));
   if (argv[1][0] != '-' &&

@@ -22,6 +22,8 @@ TEST_CASE("every command explains itself and all its options") {
        {"SCENE", "--a", "--b", "--json", "--out", "--size", "--spp", "--depth", "--seed", "--camera-position",
         "--min-within-1e3", "--min-bit-equal", "--max-mean-difference", "--max-non-finite", "Exit code", "Examples"}},
       {"generate", {"--triangles", "--output", "Example"}},
+      {"conformance",
+       {"--device", "--require-devices", "--filter", "--list", "--full", "--json", "--markdown", "Exit code"}},
       {"bench", {"SCENE", "--device", "--repeat", "--json", "--size", "--spp", "Example"}}};
   const Outcome overview = run_tandem({"--help"});
   CHECK(overview.exit_code == 0);
@@ -94,6 +96,9 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
       {{"bench", box}, "--device is required"},
       {{"bench", box, "--device", "cpu", "--repeat", "0"}, "--repeat: '0' is not a whole number from 1"},
       {{"bench", box, "--device", "cpu", "--json", "/dev/null"}, "/dev/null"},
+      {{"conformance", "--filter", "teapot.*"}, "no case matches 'teapot.*'"},
+      {{"conformance", "--device", "teapot"}, "teapot"},
+      {{"conformance", "--json", "missing/x.json"}, "missing"},
       {{"generate", "--triangles", "3", "-o", "x.obj"}, "--triangles: '3' is not a whole number"},
       {{"generate", "--triangles", "100", "-o", "missing/x.obj"}, "missing"},
   };

@@ -1,0 +1,43 @@
+#include "conformance/cases.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tandem::conformance {
+namespace {
+
+using rhi::Capabilities;
+
+constexpr std::pair<Capability, std::string_view> capability_names[] = {
+    {&Capabilities::ray_query, "ray_query"},
+    {&Capabilities::ray_tracing_pipeline, "ray_tracing_pipeline"},
+    {&Capabilities::position_fetch, "position_fetch"},
+    {&Capabilities::trace_rays_indirect, "trace_rays_indirect"},
+    {&Capabilities::primitive_culling, "primitive_culling"},
+    {&Capabilities::null_acceleration_structure, "null_acceleration_structure"},
+    {&Capabilities::buffer_references, "buffer_references"},
+    {&Capabilities::non_uniform_indexing, "non_uniform_indexing"},
+    {&Capabilities::scalar_block_layout, "scalar_block_layout"},
+    {&Capabilities::shader_int64, "shader_int64"},
+    {&Capabilities::shader_float64, "shader_float64"},
+    {&Capabilities::timestamps, "timestamps"},
+};
+
+}  // namespace
+
+std::string_view name_of(Capability capability) {
+  const auto* const found = std::find_if(std::begin(capability_names), std::end(capability_names),
+                                         [capability](const auto& entry) { return entry.first == capability; });
+  return found == std::end(capability_names) ? "a capability without a name" : found->second;
+}
+
+std::string_view group_of(std::string_view case_name) { return case_name.substr(0, case_name.rfind('.')); }
+
+std::vector<Case> all_cases() {
+  Cases cases;
+  add_ray_query_builtin_cases(cases);
+  return cases;
+}
+
+}  // namespace tandem::conformance
