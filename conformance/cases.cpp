@@ -34,9 +34,17 @@ std::string_view name_of(Capability capability) {
 
 std::string_view group_of(std::string_view case_name) { return case_name.substr(0, case_name.rfind('.')); }
 
+void Group::add(const std::string& last_name, const std::string& behaviour, std::function<void(Context&)> run) const {
+  cases.push_back({.name = name + "." + last_name, .behaviour = behaviour, .needs = needs, .run = std::move(run)});
+}
+
 std::vector<Case> all_cases() {
   Cases cases;
   add_ray_query_builtin_cases(cases);
+  add_ray_query_traversal_cases(cases);
+  add_ray_query_procedural_cases(cases);
+  add_ray_query_flag_cases(cases);
+  add_ray_query_range_cases(cases);
   return cases;
 }
 

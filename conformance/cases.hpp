@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "conformance/case.hpp"
@@ -9,6 +11,19 @@ namespace tandem::conformance {
 
 using Cases = std::vector<Case>;
 
+/// Appends cases that share their group and what they need.
+struct Group {
+  Cases& cases;
+  std::string name;  ///< group.subgroup
+  std::vector<Capability> needs = {&rhi::Capabilities::ray_query};
+
+  void add(const std::string& last_name, const std::string& behaviour, std::function<void(Context&)> run) const;
+};
+
 void add_ray_query_builtin_cases(Cases& cases);
+void add_ray_query_traversal_cases(Cases& cases);
+void add_ray_query_procedural_cases(Cases& cases);
+void add_ray_query_flag_cases(Cases& cases);
+void add_ray_query_range_cases(Cases& cases);
 
 }  // namespace tandem::conformance

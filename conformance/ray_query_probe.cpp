@@ -4,6 +4,8 @@
 #include <span>
 #include <string>
 
+#include "conformance/check.hpp"
+
 namespace tandem::conformance {
 namespace {
 
@@ -60,6 +62,10 @@ vec4 row(mat4x3 matrix, int r) { return vec4(matrix[0][r], matrix[1][r], matrix[
   target.front_face = rayQueryGetIntersectionFrontFaceEXT(query, committed) ? 1u : 0u;      \
   target.u = rayQueryGetIntersectionBarycentricsEXT(query, committed).x;                    \
   target.v = rayQueryGetIntersectionBarycentricsEXT(query, committed).y;
+#define CLOSEST                                                                                                   \
+  (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT                         \
+       ? ray.t_max                                                                                                \
+       : rayQueryGetIntersectionTEXT(query, true))
 
 Intersection nothing() {
   Intersection result;
@@ -95,8 +101,11 @@ void main() {
       if (decision.geometry != ANY && decision.geometry != candidate.geometry) continue;
       if (decision.primitive != ANY && decision.primitive != candidate.primitive) continue;
       if ((decision.actions & CONFIRM) != 0u) rayQueryConfirmIntersectionEXT(query);
-      if ((decision.actions & GENERATE) != 0u) rayQueryGenerateIntersectionEXT(query, decision.t);
-      if ((decision.actions & GENERATE_SECOND) != 0u) rayQueryGenerateIntersectionEXT(query, decision.second_t);
+      // A hit that is generated must not be behind what is committed.
+      if ((decision.actions & GENERATE) != 0u && decision.t <= CLOSEST)
+        rayQueryGenerateIntersectionEXT(query, decision.t);
+      if ((decision.actions & GENERATE_SECOND) != 0u && decision.second_t <= CLOSEST)
+        rayQueryGenerateIntersectionEXT(query, decision.second_t);
       if ((decision.actions & TERMINATE) != 0u) rayQueryTerminateEXT(query);
       break;
     }
@@ -163,7 +172,29 @@ Traversal traversal_of(const TraversalData& data) {
   return traversal;
 }
 
+void check_ids(std::string_view what, const Intersection& seen, const Ids& expected) {
+  check_equal(fmt::format("{}: the instance", what), seen.instance, expected.instance);
+  check_equal(fmt::format("{}: the geometry", what), seen.geometry, expected.geometry);
+  check_equal(fmt::format("{}: the primitive", what), seen.primitive, expected.primitive);
+}
+
 }  // namespace
+
+void check_miss(std::string_view what, const Traversal& traversal) {
+  check_equal(fmt::format("{}: the committed type", what), traversal.committed.type, committed_type::none);
+}
+
+void check_triangle(std::string_view what, const Traversal& traversal, const Ids& ids, double t) {
+  check_equal(fmt::format("{}: the committed type", what), traversal.committed.type, committed_type::triangle);
+  check_ids(what, traversal.committed, ids);
+  check_close(fmt::format("{}: t", what), traversal.committed.t, t);
+}
+
+void check_generated(std::string_view what, const Traversal& traversal, const Ids& ids, float t) {
+  check_equal(fmt::format("{}: the committed type", what), traversal.committed.type, committed_type::generated);
+  check_ids(what, traversal.committed, ids);
+  check_equal(fmt::format("{}: t", what), traversal.committed.t, t);
+}
 
 std::vector<Traversal> trace(Context& context, const rhi::AccelerationStructureHandle& top_level,
                              const std::vector<Ray>& rays) {

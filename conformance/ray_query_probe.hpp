@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <string_view>
 #include <vector>
 
 #include "conformance/context.hpp"
@@ -45,7 +46,7 @@ inline constexpr std::uint32_t generated = 2;
 namespace action {
 inline constexpr std::uint32_t skip = 0;
 inline constexpr std::uint32_t confirm = 1;          ///< triangles only
-inline constexpr std::uint32_t generate = 2;         ///< boxes only: generates an intersection at Decision::t
+inline constexpr std::uint32_t generate = 2;         ///< boxes only, at Decision::t unless what is committed is nearer
 inline constexpr std::uint32_t generate_second = 4;  ///< after that, another at Decision::second_t
 inline constexpr std::uint32_t terminate = 8;
 }  // namespace action
@@ -111,6 +112,20 @@ struct Traversal {
 };
 
 inline constexpr std::uint32_t most_candidates = 12;
+
+/// Which primitive.
+struct Ids {
+  std::uint32_t instance = 0;
+  std::uint32_t geometry = 0;
+  std::uint32_t primitive = 0;
+};
+
+/// Throws Failure unless nothing is committed. `what` names the ray.
+void check_miss(std::string_view what, const Traversal& traversal);
+/// Throws Failure unless this triangle is committed at `t`.
+void check_triangle(std::string_view what, const Traversal& traversal, const Ids& ids, double t);
+/// Throws Failure unless an intersection of this box is committed at exactly `t`.
+void check_generated(std::string_view what, const Traversal& traversal, const Ids& ids, float t);
 
 /// Traces the rays, one invocation each.
 std::vector<Traversal> trace(Context& context, const rhi::AccelerationStructureHandle& top_level,

@@ -119,17 +119,13 @@ std::string text(const DeviceReport& report) {
   for (const std::string_view group : groups_of(std::span(report.results)))
     text += text_row(group, count_group(report, group));
   text += text_row("all", count_all(report));
-  for (const Result& result : report.results) {
-    if (result.status != Status::passed && result.status != Status::unsupported)
-      text += fmt::format("  {}: {}: {}\n", name_of(result.status), result.name, result.sentence);
-  }
-  // Many cases need the same: one line for each reason.
-  std::map<std::string, std::vector<std::string_view>> unsupported;
+  // Many cases may need the same that is missing: one line for each reason.
+  std::map<std::pair<Status, std::string>, std::vector<std::string_view>> reasons;
   for (const Result& result : report.results)
-    if (result.status == Status::unsupported) unsupported[result.sentence].push_back(result.name);
-  for (const auto& [reason, names] : unsupported)
-    text += fmt::format("  unsupported: {}: {} case{}, {}{}\n", reason, names.size(), names.size() == 1 ? "" : "s",
-                        names.front(), names.size() == 1 ? "" : ", ...");
+    if (result.status != Status::passed) reasons[{result.status, result.sentence}].push_back(result.name);
+  for (const auto& [reason, names] : reasons)
+    text += fmt::format("  {}: {}{}: {}\n", name_of(reason.first), names.front(),
+                        names.size() == 1 ? "" : fmt::format(" and {} more", names.size() - 1), reason.second);
   for (const Result& result : report.results)
     if (!result.note.empty()) text += fmt::format("  note: {}: {}\n", result.name, result.note);
   if (count(report, Status::passed) == 0) text += "  no case passed\n";
