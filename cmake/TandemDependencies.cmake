@@ -27,6 +27,9 @@ if(NOT embree_FOUND)
 endif()
 if(TANDEM_BUILD_TESTS)
   find_package(doctest REQUIRED CONFIG)
+  # Rational numbers, which the exact tracer is tested against.
+  find_path(TANDEM_GMP_INCLUDE_DIRECTORY gmpxx.h REQUIRED)
+  find_library(TANDEM_GMP_LIBRARY gmp REQUIRED)
 endif()
 # Used as a header only, so nothing needs linking and installed programs do not depend on it.
 find_path(TANDEM_XXHASH_INCLUDE_DIRECTORY xxhash.h REQUIRED)

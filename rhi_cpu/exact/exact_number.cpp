@@ -110,6 +110,7 @@ ExactNumber operator*(const ExactNumber& a, const ExactNumber& b) {
 }
 
 double ExactNumber::approximation() const {
+  if (size_ == 0) return 0;
   const int top = exponent_ + size_ - 1;
   const double magnitude = std::ldexp(static_cast<double>(limb_at(top)), limb_bits) +
                            static_cast<double>(limb_at(top - 1));  // at least 64 significant bits, rounded twice
