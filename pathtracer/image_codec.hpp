@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+/// The formats of picture files. By OpenImageIO, or, for programs that are carried to other machines (OpenImageIO comes
+/// with hundreds of libraries), by tinyexr and libpng: the CMake variable TANDEM_IMAGE_LIBRARY chooses.
+namespace tandem::pathtracer {
+
+/// Strings that a file holds beside its pixels.
+using ImageAttributes = std::map<std::string, std::string>;
+
+/// An OpenEXR file of 32-bit floats R, G and B. @param pixels width * height of them, linear, row by row from the top
+/// Throws Error with the reason alone.
+std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> pixels,
+                                  const ImageAttributes& attributes);
+
+/// A PNG file of 8 bits, tagged sRGB. @param rgb 3 * width * height bytes. Throws Error with the reason alone.
+std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgb,
+                                  const ImageAttributes& attributes);
+
+struct DecodedImage {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint32_t channels = 0;  ///< 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; others as the file has them
+  std::vector<float> values;   ///< channels of a pixel side by side, row by row from the top; integers become [0, 1]
+  bool is_png = false;         ///< then colours are sRGB-encoded
+  ImageAttributes attributes;
+};
+
+/// Reads a file. Throws Error with the reason alone when it cannot be read.
+DecodedImage decode_image(const std::filesystem::path& path);
+
+}  // namespace tandem::pathtracer

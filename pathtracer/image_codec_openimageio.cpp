@@ -1,0 +1,61 @@
+#include <memory>
+#include <string_view>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "pathtracer/error.hpp"
+#include "pathtracer/image_codec.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+std::vector<std::byte> encode(const char* format, std::uint32_t width, std::uint32_t height, OIIO::TypeDesc type,
+                              const void* pixels, const char* color_space, const ImageAttributes& attributes) {
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
+  if (!output) throw Error(OIIO::geterror());
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, type);
+  spec.attribute("oiio:ColorSpace", color_space);
+  for (const auto& [key, value] : attributes) spec.attribute(key, value);
+  // Into memory first: OpenImageIO's own files do not say when a full disk took only half of one.
+  std::vector<unsigned char> file;
+  OIIO::Filesystem::IOVecOutput memory(file);
+  if (!output->set_ioproxy(&memory) || !output->open(std::string("picture.") + format, spec) ||
+      !output->write_image(type, pixels) || !output->close())
+    throw Error(output->geterror());
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
+  return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> pixels,
+                                  const ImageAttributes& attributes) {
+  return encode("exr", width, height, OIIO::TypeDesc::FLOAT, pixels.data(), "Linear", attributes);
+}
+
+std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgb,
+                                  const ImageAttributes& attributes) {
+  return encode("png", width, height, OIIO::TypeDesc::UINT8, rgb.data(), "sRGB", attributes);
+}
+
+DecodedImage decode_image(const std::filesystem::path& path) {
+  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
+  if (!input) throw Error(OIIO::geterror());
+  const OIIO::ImageSpec spec = input->spec();
+  DecodedImage image{.width = static_cast<std::uint32_t>(spec.width),
+                     .height = static_cast<std::uint32_t>(spec.height),
+                     .channels = static_cast<std::uint32_t>(spec.nchannels),
+                     .values = {},
+                     .is_png = std::string_view(input->format_name()) == "png",
+                     .attributes = {}};
+  image.values.resize(std::size_t{image.width} * image.height * image.channels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
+    throw Error(input->geterror());
+  for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+    if (attribute.type() == OIIO::TypeDesc::STRING)
+      image.attributes.emplace(attribute.name().string(), attribute.get_string());
+  return image;
+}
+
+}  // namespace tandem::pathtracer
