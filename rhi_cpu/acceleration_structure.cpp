@@ -62,7 +62,7 @@ void BottomLevelStructure::build(const rhi::BottomLevelDesc& desc) {
   std::vector<GeometryInput> inputs;
   for (const rhi::Geometry& geometry : desc.geometries)
     inputs.push_back(input_of(std::get<rhi::TriangleGeometry>(geometry)));
-  device_->bottom_levels.set_built(address_, BottomLevel::build(device_->embree, inputs, label()));
+  device_->bottom_levels.set_built(address_, BottomLevel::build(device_->embree, inputs, desc.flags, label()));
 }
 
 TopLevelStructure::TopLevelStructure(DeviceStateHandle device, const rhi::TopLevelDesc& desc)
@@ -89,7 +89,7 @@ void TopLevelStructure::build(const rhi::TopLevelDesc& desc) {
     named.emplace(address, found.built);
   }
   const auto lookup = [&named](std::uint64_t address) { return named.at(address).get(); };
-  built_ = TopLevel::build(device_->embree, instances, lookup, label());
+  built_ = TopLevel::build(device_->embree, instances, lookup, desc.flags, label());
 }
 
 void check_owner(const rhi::BottomLevelDesc& desc, const DeviceState& device) {

@@ -10,9 +10,14 @@
 /// kernel::TraceFunctions. Everything is inline, and no function takes the address of a query or of a part of it, so
 /// that the compiler can keep the members of a query in registers.
 ///
+/// Candidates come in the order of where the ray meets them: a triangle's t, or where the ray enters a box. A confirmed
+/// triangle therefore ends the search; a hit generated in a box does not, as long as other things begin in front of it.
+///
 /// What GLSL leaves undefined is defined here: a query that was never initialised, or whose acceleration structure is
-/// null, meets nothing; Proceed goes on returning false once it has; Confirm without a candidate does nothing; the
-/// getters of a hit that does not exist give zero, but t of the committed hit gives t_max.
+/// null, meets nothing; Proceed goes on returning false once it has; Confirm without a triangle and Generate without a
+/// box as candidate do nothing, nor does Generate with a t outside of t_min and the committed hit's t (or t_max); both
+/// work on the last candidate until the next Proceed, also after Terminate; the getters of a hit that does not exist
+/// give zero, but t of the committed hit gives t_max; t of a candidate box is where the ray enters it.
 namespace tandem::kernel {
 
 /// accelerationStructureEXT: refers to a built top level, or to nothing.
@@ -20,58 +25,67 @@ struct accelerationStructureEXT {
   const TopLevel* top_level = nullptr;
 };
 
-/// What rayQueryGetIntersectionTypeEXT returns of the committed hit; of a candidate it returns 0, a triangle.
+/// What rayQueryGetIntersectionTypeEXT returns of the committed hit.
 inline constexpr uint committed_intersection_none = 0;
 inline constexpr uint committed_intersection_triangle = 1;
+inline constexpr uint committed_intersection_generated = 2;
+
+/// What it returns of a candidate.
+inline constexpr uint candidate_intersection_triangle = 0;
+inline constexpr uint candidate_intersection_aabb = 1;
+
+/// Hits that are asked for at once. More take more memory in every query, fewer more traversals.
+inline constexpr std::uint32_t hits_at_once = 4;
 
 /// In Hit::instance_index: there is no hit.
 inline constexpr std::uint32_t no_instance = ~std::uint32_t{0};
+inline constexpr Hit no_hit = {.t = 0,
+                               .barycentrics = {0, 0},
+                               .instance_index = no_instance,
+                               .geometry_index = 0,
+                               .primitive_index = 0,
+                               .front_face = false,
+                               .opaque = false,
+                               .is_box = false};
 
 enum class RayQueryState : std::uint8_t {
-  complete,      ///< Proceed has nothing more to find
-  initialized,   ///< not traced yet
-  at_candidate,  ///< Proceed has returned true, and the candidate is not confirmed
-  confirmed      ///< Confirm was called for the candidate
+  complete,          ///< Proceed has nothing more to find, and there is no candidate
+  initialized,       ///< not traced yet
+  at_candidate,      ///< Proceed has returned true
+  at_last_candidate  ///< it has, and will not do so again
 };
 
 struct rayQueryEXT {
   const TopLevel* scene = nullptr;
   Ray ray = {};
-  Hit committed = {.t = 0,
-                   .barycentrics = {0, 0},
-                   .instance_index = no_instance,
-                   .geometry_index = 0,
-                   .primitive_index = 0,
-                   .front_face = false,
-                   .opaque = false,
-                   .is_box = false};
-  Hit candidate = {.t = 0,
-                   .barycentrics = {0, 0},
-                   .instance_index = no_instance,
-                   .geometry_index = 0,
-                   .primitive_index = 0,
-                   .front_face = false,
-                   .opaque = false,
-                   .is_box = false};
+  Hit committed = no_hit;
+  Hit candidate = no_hit;
   RayQueryState state = RayQueryState::complete;
   bool has_committed = false;
   /// The committed hit is known to exist, but not yet which it is: most rays that stop at the first hit only ask
   /// whether there is one, which is the cheaper question.
   bool committed_is_unknown = false;
+  bool are_last_hits = false;  ///< there are no more behind `hits`
+  std::uint8_t hit_count = 0;  ///< of `hits`
+  std::uint8_t next_hit = 0;   ///< of `hits`: the one behind the candidate
+  Hit hits[hits_at_once];
 };
 
 #define TANDEM_RAY_QUERY_INLINE [[gnu::always_inline]] inline
 
 TANDEM_RAY_QUERY_INLINE void rayQueryInitializeEXT(rayQueryEXT& query, accelerationStructureEXT structure, uint flags,
                                                    uint mask, vec3 origin, float t_min, vec3 direction, float t_max) {
-  query = rayQueryEXT{};
   query.scene = structure.top_level;
+  query.committed = query.candidate = no_hit;
+  query.has_committed = query.committed_is_unknown = query.are_last_hits = false;
+  query.hit_count = query.next_hit = 0;
   query.ray = {
       {origin.x, origin.y, origin.z}, t_min, {direction.x, direction.y, direction.z}, t_max, flags, mask & 0xFF};
   query.committed.t = t_max;
   // Written so that a NaN at either end meets nothing too.
-  const bool meets_anything =
-      structure.top_level != nullptr && (mask & 0xFF) != 0 && (flags & ray_flag_skip_triangles) == 0 && t_min < t_max;
+  const bool meets_anything = structure.top_level != nullptr && (mask & 0xFF) != 0 && t_min < t_max &&
+                              ((flags & ray_flag_skip_triangles) == 0 ||
+                               ((flags & ray_flag_skip_aabbs) == 0 && structure.top_level->has_boxes));
   query.state = meets_anything ? RayQueryState::initialized : RayQueryState::complete;
 }
 
@@ -85,36 +99,53 @@ TANDEM_RAY_QUERY_INLINE Ray vector_copy(const Ray& ray) {
   });
 }
 
-/// Whether some hit of the ray could need the shader's confirmation.
-TANDEM_RAY_QUERY_INLINE bool can_meet_candidates(const TopLevel& scene, uint flags) {
-  if ((flags & (ray_flag_opaque | ray_flag_cull_no_opaque)) != 0) return false;
-  return (flags & ray_flag_no_opaque) != 0 || !scene.all_opaque;
+/// The one call that finds the hit of a ray which meets no candidates.
+TANDEM_RAY_QUERY_INLINE void commit_closest(rayQueryEXT& query, const Ray& ray) {
+  const TopLevel& scene = *query.scene;
+  Hit hit;
+  if ((ray.flags & ray_flag_terminate_on_first_hit) != 0) {
+    query.has_committed = query.committed_is_unknown = scene.functions->occluded(scene, ray);
+  } else if (scene.functions->closest(scene, ray, hit)) {
+    query.committed = hit;
+    query.has_committed = true;
+  }
+}
+
+/// Asks for the hits behind the last one, which was the candidate if there was one.
+TANDEM_RAY_QUERY_INLINE void fetch_hits(rayQueryEXT& query, const Ray& ray) {
+  const Hit previous = query.candidate;
+  Hit hits[hits_at_once];
+  const std::uint32_t count = query.scene->functions->next_hits(
+      *query.scene, ray, previous.instance_index == no_instance ? nullptr : &previous, hits, hits_at_once);
+  for (std::uint32_t i = 0; i < hits_at_once; ++i) {
+    if (i < count) query.hits[i] = hits[i];
+  }
+  query.hit_count = static_cast<std::uint8_t>(count);
+  query.next_hit = 0;
+  query.are_last_hits = count < hits_at_once;
 }
 
 TANDEM_RAY_QUERY_INLINE bool rayQueryProceedEXT(rayQueryEXT& query) {
   const RayQueryState state = query.state;
   query.state = RayQueryState::complete;
-  // Candidates come in the order of t, so nothing after a confirmed one is nearer.
-  if (state == RayQueryState::complete || state == RayQueryState::confirmed) return false;
+  if (state == RayQueryState::complete || state == RayQueryState::at_last_candidate) return false;
 
-  const TopLevel& scene = *query.scene;
   const Ray ray = vector_copy(query.ray);
-  Hit hit;
-  if (!can_meet_candidates(scene, ray.flags)) {
-    if ((ray.flags & ray_flag_terminate_on_first_hit) != 0) {
-      query.has_committed = query.committed_is_unknown = scene.functions->occluded(scene, ray);
-    } else if (scene.functions->closest(scene, ray, hit)) {
-      query.committed = hit;
-      query.has_committed = true;
-    }
+  if (state == RayQueryState::initialized && !can_meet_candidates(*query.scene, ray.flags)) {
+    commit_closest(query, ray);
     return false;
   }
 
-  const Hit previous = query.candidate;
-  const bool found =
-      scene.functions->next_hits(scene, ray, state == RayQueryState::initialized ? nullptr : &previous, &hit, 1) == 1;
-  if (!found) return false;
-  if (hit.opaque) {
+  if (query.next_hit == query.hit_count && !query.are_last_hits) fetch_hits(query, ray);
+  if (query.next_hit == query.hit_count) return false;
+  // No element has a variable index, so that the compiler can keep them apart.
+  Hit hit = no_hit;
+  for (std::uint32_t i = 0; i < hits_at_once; ++i) {
+    if (i == query.next_hit) hit = query.hits[i];
+  }
+  ++query.next_hit;
+  if (query.has_committed && !(hit.t < query.committed.t)) return false;
+  if (hit.opaque && !hit.is_box) {
     query.committed = hit;
     query.has_committed = true;
     return false;
@@ -124,13 +155,31 @@ TANDEM_RAY_QUERY_INLINE bool rayQueryProceedEXT(rayQueryEXT& query) {
   return true;
 }
 
-TANDEM_RAY_QUERY_INLINE void rayQueryTerminateEXT(rayQueryEXT& query) { query.state = RayQueryState::complete; }
+TANDEM_RAY_QUERY_INLINE bool has_candidate(const rayQueryEXT& query) {
+  return query.state == RayQueryState::at_candidate || query.state == RayQueryState::at_last_candidate;
+}
+
+TANDEM_RAY_QUERY_INLINE void rayQueryTerminateEXT(rayQueryEXT& query) {
+  query.state = has_candidate(query) ? RayQueryState::at_last_candidate : RayQueryState::complete;
+}
 
 TANDEM_RAY_QUERY_INLINE void rayQueryConfirmIntersectionEXT(rayQueryEXT& query) {
-  if (query.state != RayQueryState::at_candidate) return;
+  if (!has_candidate(query) || query.candidate.is_box) return;
   query.committed = query.candidate;
   query.has_committed = true;
-  query.state = RayQueryState::confirmed;
+  query.state = RayQueryState::at_last_candidate;
+}
+
+TANDEM_RAY_QUERY_INLINE void rayQueryGenerateIntersectionEXT(rayQueryEXT& query, float t) {
+  if (!has_candidate(query) || !query.candidate.is_box || !(t >= query.ray.t_min && t <= query.committed.t)) return;
+  query.committed = query.candidate;
+  query.committed.t = t;
+  query.has_committed = true;
+  if ((query.ray.flags & ray_flag_terminate_on_first_hit) != 0) query.state = RayQueryState::at_last_candidate;
+}
+
+TANDEM_RAY_QUERY_INLINE bool rayQueryGetIntersectionCandidateAABBOpaqueEXT(rayQueryEXT& query) {
+  return query.candidate.is_box && query.candidate.opaque;
 }
 
 /// The hit behind a getter, found now if it is not known yet.
@@ -152,7 +201,9 @@ TANDEM_RAY_QUERY_INLINE const Instance* intersected_instance(rayQueryEXT& query,
 }
 
 TANDEM_RAY_QUERY_INLINE uint rayQueryGetIntersectionTypeEXT(rayQueryEXT& query, bool committed) {
-  return committed && query.has_committed ? committed_intersection_triangle : committed_intersection_none;
+  if (!committed) return query.candidate.is_box ? candidate_intersection_aabb : candidate_intersection_triangle;
+  if (!query.has_committed) return committed_intersection_none;
+  return query.committed.is_box ? committed_intersection_generated : committed_intersection_triangle;
 }
 
 TANDEM_RAY_QUERY_INLINE float rayQueryGetIntersectionTEXT(rayQueryEXT& query, bool committed) {

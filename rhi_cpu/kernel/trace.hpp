@@ -92,8 +92,8 @@ struct TraceFunctions {
   bool (*occluded)(const TopLevel& scene, const Ray& ray);
   /// The first hits, at most `capacity`, after `previous`, or the first of all when it is null, in the total order (t,
   /// instance, geometry, primitive), opaque or not, triangles and boxes. Fewer than `capacity`: there are no more after
-  /// them. Repeated with the last one as `previous`, it enumerates every triangle and box that the ray meets exactly
-  /// once, also those of equal t.
+  /// them, or the last of them is an opaque triangle, behind which nothing can be committed. Repeated with the last one
+  /// as `previous`, it enumerates every triangle and box that the ray meets exactly once, also those of equal t.
   std::uint32_t (*next_hits)(const TopLevel& scene, const Ray& ray, const Hit* previous, Hit* hits,
                              std::uint32_t capacity);
   /// The closest of the opaque triangles and of what `visitor` commits; with ray_flag_terminate_on_first_hit any of
@@ -110,5 +110,13 @@ struct TopLevel {
   bool all_opaque;  ///< no triangle is a candidate unless the ray has ray_flag_no_opaque
   bool has_boxes;   ///< some instance holds boxes, which are always candidates
 };
+
+/// Whether a ray with these flags could meet anything that needs the shader's decision. When it cannot, `closest` and
+/// `occluded` are all that it takes.
+inline bool can_meet_candidates(const TopLevel& scene, std::uint32_t flags) {
+  if (scene.has_boxes && (flags & ray_flag_skip_aabbs) == 0) return true;
+  if ((flags & (ray_flag_opaque | ray_flag_cull_no_opaque | ray_flag_skip_triangles)) != 0) return false;
+  return (flags & ray_flag_no_opaque) != 0 || !scene.all_opaque;
+}
 
 }  // namespace tandem::kernel

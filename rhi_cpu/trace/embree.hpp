@@ -81,6 +81,18 @@ inline void intersect(RTCScene scene, RTCRayHit& ray, EmbreeContext& context, RT
 #endif
 }
 
+/// Closest hit of user geometries, whose callbacks find `context`, initialised, in their arguments.
+inline void intersect(RTCScene scene, RTCRayHit& ray, EmbreeContext& context) {
+#if TANDEM_EMBREE_MAJOR >= 4
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context;
+  rtcIntersect1(scene, &ray, &arguments);
+#else
+  rtcIntersect1(scene, &context, &ray);
+#endif
+}
+
 /// Any of the hits that the filter accepts.
 inline void occlude(RTCScene scene, RTCRay& ray, EmbreeContext& context, RTCFilterFunctionN filter) {
 #if TANDEM_EMBREE_MAJOR >= 4

@@ -1,5 +1,6 @@
 #include "rhi_cpu/trace/embree_device.hpp"
 
+#include <atomic>
 #include <mutex>
 #include <utility>
 
@@ -16,6 +17,7 @@ struct EmbreeDevice::State {
   std::string last_text;  // of the error callback; guarded by mutex
   RTCDevice device = nullptr;
   bool has_ray_masks = false;
+  std::atomic<std::int64_t> allocated = 0;
 
   State() = default;
   State(const State&) = delete;
@@ -25,7 +27,13 @@ struct EmbreeDevice::State {
     if (device == nullptr) return;
     // Scenes may keep the device alive beyond this object.
     rtcSetDeviceErrorFunction(device, nullptr, nullptr);
+    rtcSetDeviceMemoryMonitorFunction(device, nullptr, nullptr);
     rtcReleaseDevice(device);
+  }
+
+  static bool count_memory(void* user, ssize_t bytes, bool /*after*/) {
+    static_cast<State*>(user)->allocated += bytes;
+    return true;
   }
 
   static void report(void* user, RTCError /*error*/, const char* text) {
@@ -49,6 +57,7 @@ EmbreeDevice::EmbreeDevice(rhi::MessageCallback on_message, std::uint32_t thread
         fmt::format("Embree does not start on this machine (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
   }
   rtcSetDeviceErrorFunction(state_->device, &State::report, state_.get());
+  rtcSetDeviceMemoryMonitorFunction(state_->device, &State::count_memory, state_.get());
   if (rtcGetDeviceProperty(state_->device, RTC_DEVICE_PROPERTY_FILTER_FUNCTION_SUPPORTED) == 0) {
     throw rhi::Error(rhi::ErrorCode::no_such_device, "",
                      fmt::format("{} was built without filter functions, which ray queries need", embree_version()));
@@ -63,6 +72,8 @@ EmbreeDevice& EmbreeDevice::operator=(EmbreeDevice&&) noexcept = default;
 RTCDeviceTy* EmbreeDevice::get() const noexcept { return state_->device; }
 
 bool EmbreeDevice::has_ray_masks() const noexcept { return state_->has_ray_masks; }
+
+std::int64_t EmbreeDevice::allocated_bytes() const noexcept { return state_->allocated; }
 
 void EmbreeDevice::check(std::string_view label) const {
   const RTCError error = rtcGetDeviceError(state_->device);

@@ -27,6 +27,10 @@ class EmbreeDevice {
   /// Whether Embree itself skips instances by mask; else the trace functions do it.
   bool has_ray_masks() const noexcept;
 
+  /// Memory that Embree holds for this device. What a build adds to it is only known when no other build, and no
+  /// release of a structure, happens meanwhile.
+  std::int64_t allocated_bytes() const noexcept;
+
   /// Throws rhi::Error, in the name of `label`, if an Embree call of this thread has failed since the last check.
   void check(std::string_view label) const;
 

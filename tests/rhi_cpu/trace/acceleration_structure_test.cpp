@@ -95,10 +95,10 @@ TEST_CASE("a geometry transform moves the vertices and with them the winding") {
                                  .triangle_count = 1,
                                  .transform = swap_xy};
   const cpu::BottomLevel bottom_level =
-      cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, "swapped");
+      cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, rhi::BuildFlags::none, "swapped");
   const rhi::InstanceDesc instance = instance_of(0);
   const cpu::TopLevel top_level = cpu::TopLevel::build(
-      device, {&instance, 1}, [&](std::uint64_t) { return &bottom_level; }, "swapped");
+      device, {&instance, 1}, [&](std::uint64_t) { return &bottom_level; }, rhi::BuildFlags::none, "swapped");
   rayQueryEXT down = trace(top_level, vec3(0.5f, 0.125f, 2), vec3(0, 0, -1));
   REQUIRE(is_hit(down));
   CHECK_FALSE(rayQueryGetIntersectionFrontFaceEXT(down, true));
@@ -167,10 +167,10 @@ TEST_CASE("index formats, strides and index gaps") {
   }
   // Geometry 0 is empty: it keeps its place.
   const cpu::GeometryInput inputs[] = {cpu::TriangleInput{}, input};
-  const cpu::BottomLevel bottom_level = cpu::BottomLevel::build(device, inputs, "indexed");
+  const cpu::BottomLevel bottom_level = cpu::BottomLevel::build(device, inputs, rhi::BuildFlags::none, "indexed");
   const rhi::InstanceDesc instance = instance_of(0);
   const cpu::TopLevel top_level = cpu::TopLevel::build(
-      device, {&instance, 1}, [&](std::uint64_t) { return &bottom_level; }, "indexed");
+      device, {&instance, 1}, [&](std::uint64_t) { return &bottom_level; }, rhi::BuildFlags::none, "indexed");
   rayQueryEXT query = trace(top_level, vec3(0.25f, 0.25f, 1), vec3(0, 0, -1));
   CHECK(is_hit(query));
   CHECK(rayQueryGetIntersectionGeometryIndexEXT(query, true) == 1);
@@ -306,8 +306,9 @@ TEST_CASE("bad input is one sentence that names the structure and what is wrong"
   const auto error = [&](const auto& change) {
     cpu::TriangleInput input = good;
     change(input);
-    const std::string text =
-        error_of([&] { cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, "bunny"); });
+    const std::string text = error_of([&] {
+      cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, rhi::BuildFlags::none, "bunny");
+    });
     CHECK(contains(text, "bunny"));
     return text;
   };
@@ -323,7 +324,7 @@ TEST_CASE("bad input is one sentence that names the structure and what is wrong"
   const rhi::InstanceDesc instance = instance_of(0xFF);
   const std::string text = error_of([&] {
     cpu::TopLevel::build(
-        device, {&instance, 1}, [](std::uint64_t) { return nullptr; }, "world");
+        device, {&instance, 1}, [](std::uint64_t) { return nullptr; }, rhi::BuildFlags::none, "world");
   });
   CHECK(contains(text, "world: instance 0 refers to the address 0x100"));
 }

@@ -145,10 +145,11 @@ BuiltSoup build(const cpu::EmbreeDevice& device, const Soup& soup) {
                              .triangle_count = count,
                              .flags = geometry.opaque ? rhi::GeometryFlags::opaque : rhi::GeometryFlags::none});
     }
-    bottom_levels.push_back(cpu::BottomLevel::build(device, inputs, "soup"));
+    bottom_levels.push_back(cpu::BottomLevel::build(device, inputs, rhi::BuildFlags::none, "soup"));
   }
   cpu::TopLevel top_level = cpu::TopLevel::build(
-      device, soup.instances, [&](std::uint64_t address) { return &bottom_levels.at(address - 1); }, "soup");
+      device, soup.instances, [&](std::uint64_t address) { return &bottom_levels.at(address - 1); },
+      rhi::BuildFlags::none, "soup");
   return {std::move(bottom_levels), std::move(top_level)};
 }
 

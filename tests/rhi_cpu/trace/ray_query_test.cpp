@@ -13,7 +13,7 @@ namespace {
 
 /// A top level whose hits are a script, and that counts what it is asked.
 struct ScriptedLevel : TopLevel {
-  std::vector<Hit> hits;  // in the order of t
+  std::vector<Hit> hits;  // in the order of t, each with a primitive index of its own
   mutable int closest_calls = 0;
   mutable int occluded_calls = 0;
   mutable int next_calls = 0;
@@ -34,7 +34,10 @@ struct ScriptedLevel : TopLevel {
     instance_count = static_cast<std::uint32_t>(scripted_instances.size());
     all_opaque = true;
     has_boxes = false;
-    for (const Hit& hit : hits) all_opaque = all_opaque && hit.opaque;
+    for (const Hit& hit : hits) {
+      all_opaque = all_opaque && (hit.opaque || hit.is_box);
+      has_boxes = has_boxes || hit.is_box;
+    }
   }
   ScriptedLevel(const ScriptedLevel&) = delete;
   ScriptedLevel& operator=(const ScriptedLevel&) = delete;
@@ -55,15 +58,17 @@ struct ScriptedLevel : TopLevel {
     of(level).last_ray = ray;
     return !of(level).hits.empty();
   }
-  static std::uint32_t next_hits(const TopLevel& level, const Ray& ray, const Hit* previous, Hit* hits, std::uint32_t) {
+  static std::uint32_t next_hits(const TopLevel& level, const Ray& ray, const Hit* previous, Hit* hits,
+                                 std::uint32_t capacity) {
     ++of(level).next_calls;
     of(level).last_ray = ray;
+    std::uint32_t count = 0;
+    bool is_behind = previous == nullptr;
     for (const Hit& candidate : of(level).hits) {
-      if (previous != nullptr && candidate.t <= previous->t) continue;
-      hits[0] = candidate;
-      return 1;
+      if (is_behind && count < capacity) hits[count++] = candidate;
+      if (previous != nullptr && candidate.primitive_index == previous->primitive_index) is_behind = true;
     }
-    return 0;
+    return count;
   }
   static constexpr TraceFunctions scripted_functions = {&closest, &occluded, &next_hits, nullptr};
 };
@@ -175,7 +180,7 @@ TEST_CASE("candidates are offered one by one, and an opaque hit ends the search"
   CHECK(rayQueryGetIntersectionPrimitiveIndexEXT(query, true) == 30);
   CHECK(rayQueryGetIntersectionTEXT(query, true) == 3);
   CHECK_FALSE(rayQueryProceedEXT(query));
-  CHECK(level.next_calls == 3);
+  CHECK(level.next_calls == 1);
   CHECK(level.closest_calls == 0);
   CHECK(level.occluded_calls == 0);
 }
