@@ -230,7 +230,7 @@ void Printer::print_members() {
     if (is_array(type))
       statement("const k::Resource* ", to_name(id), " = &", first, ";");
     else if (variable.storage == spv::StorageClassUniformConstant)
-      statement("const k::TopLevel* ", to_name(id), " = reinterpret_cast<const k::TopLevel*>(", first, ".data);");
+      statement("const ", descriptor_target(type), "* ", to_name(id), " = ", descriptor_member(type, first), ";");
     else
       statement("std::byte* ", to_name(id), " = ", first, ".data;");
   });
@@ -276,8 +276,10 @@ std::string Printer::resource_kind(rhi::BindingKind kind) const {
       return "storage_buffer";
     case rhi::BindingKind::acceleration_structure:
       return "acceleration_structure";
+    case rhi::BindingKind::storage_image:
+      return "storage_image";
     default:
-      fail("an image or sampler binding");
+      fail("a sampled image or sampler binding");
   }
 }
 

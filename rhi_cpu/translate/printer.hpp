@@ -141,6 +141,16 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_ray_tracing(spv::Op op, Operands ops);
   std::string traced_built_in(spv::BuiltIn built_in) const;
 
+  // printer_images.cpp: storage images, and descriptors as values.
+  std::string texel_format(const Type& type) const;
+  /// Types whose variables hold a pointer to what the host has bound.
+  bool is_descriptor(const Type& type) const;
+  const char* descriptor_target(const Type& type) const;
+  std::string descriptor_member(const Type& type, const std::string& resource) const;
+  /// What the UniformConstant pointer `pointer_id` points at.
+  std::string descriptor_value(std::uint32_t pointer_id);
+  bool print_image(spv::Op op, Operands ops, std::uint32_t length);
+
   // printer_extended.cpp: GLSL.std.450.
   void print_extended(Operands ops, std::uint32_t length);
   void print_split(Operands ops, const char* function, bool through_pointer);

@@ -114,8 +114,8 @@ void Printer::emit_instruction(const Instruction& instruction) {
   if (op >= spv::OpTraceRayKHR && op <= spv::OpTerminateRayKHR) return print_ray_tracing(op, ops);
   if (op == spv::OpReportIntersectionKHR) return print_ray_tracing(op, ops);
   if (op >= spv::OpRayQueryInitializeKHR) return print_ray_query(op, ops);
-  if (print_arithmetic(op, ops) || print_relation(op, ops) || print_conversion(op, ops) || print_bits(op, ops) ||
-      print_matrix(op, ops))
+  if (print_image(op, ops, length) || print_arithmetic(op, ops) || print_relation(op, ops) ||
+      print_conversion(op, ops) || print_bits(op, ops) || print_matrix(op, ops))
     return;
   fail(fmt::format("SPIR-V opcode {}", static_cast<std::uint32_t>(op)));
 }

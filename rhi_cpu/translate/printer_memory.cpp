@@ -184,13 +184,8 @@ void Printer::print_struct_memory_functions() {
 void Printer::print_load(Operands ops) {
   if (is_buffer_pointer(ops[2])) {
     define(ops[0], ops[1], load_text(ops[0], address_of(ops[2])));
-  } else if (get<Type>(ops[0]).basetype == SPIRType::AccelerationStructure && !is_array(get<Type>(ops[0]))) {
-    const bool parameter_or_variable = maybe_get<SPIRVariable>(ops[2]) != nullptr;
-    const std::string text = value(ops[2]);
-    // An element of an array of descriptors is a kernel::Resource.
-    define(ops[0], ops[1],
-           "k::accelerationStructureEXT{" +
-               (parameter_or_variable ? text : "reinterpret_cast<const k::TopLevel*>(" + text + ".data)") + "}");
+  } else if (is_descriptor(get<Type>(ops[0])) && !is_array(get<Type>(ops[0]))) {
+    define(ops[0], ops[1], descriptor_value(ops[2]));
   } else {
     define(ops[0], ops[1], value(ops[2]));
   }
@@ -216,7 +211,8 @@ void Printer::print_array_length(Operands ops) {
 void Printer::print_atomic(spv::Op op, Operands ops) {
   const bool stores = op == spv::OpAtomicStore;
   const std::uint32_t pointer_id = stores ? ops[0] : ops[2];
-  if (!is_buffer_pointer(pointer_id)) fail("an atomic operation outside of buffers");
+  if (!is_buffer_pointer(pointer_id) && type_of(pointer_id).storage != spv::StorageClassImage)
+    fail("an atomic operation outside of buffers and images");
   const Type& type = get<Type>(pointee(expression_type_id(pointer_id)));
   const std::string address = printed(address_of(pointer_id));
   const auto call = [&](const char* function, BaseType base, const std::string& arguments) {

@@ -69,10 +69,7 @@ void Printer::print_call(Operands ops, std::uint32_t length) {
     if (i > 3) arguments += ", ";
     const Type& type = type_of(ops[i]);
     if (type.pointer && type.storage == spv::StorageClassUniformConstant) {
-      const bool is_variable = maybe_get<SPIRVariable>(ops[i]) != nullptr;
-      const std::string text = value(ops[i]);
-      arguments += "k::accelerationStructureEXT{" +
-                   (is_variable ? text : "reinterpret_cast<const k::TopLevel*>(" + text + ".data)") + "}";
+      arguments += descriptor_value(ops[i]);
     } else {
       arguments += type.pointer && is_buffer(type.storage) ? printed(address_of(ops[i])) : value(ops[i]);
     }

@@ -16,9 +16,7 @@ std::uint32_t Printer::array_length(const Type& type) const {
   return type.array.back();
 }
 
-bool Printer::is_opaque(const Type& type) const {
-  return type.basetype == SPIRType::RayQuery || type.basetype == SPIRType::AccelerationStructure;
-}
+bool Printer::is_opaque(const Type& type) const { return type.basetype == SPIRType::RayQuery || is_descriptor(type); }
 
 std::string Printer::scalar_name(BaseType base) const {
   switch (base) {
@@ -74,6 +72,8 @@ std::string Printer::type_name(const Type& type) {
       return "k::rayQueryEXT";
     case SPIRType::AccelerationStructure:
       return "k::accelerationStructureEXT";
+    case SPIRType::Image:
+      return "const k::Image*";
     default:
       break;
   }

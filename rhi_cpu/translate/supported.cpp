@@ -36,6 +36,13 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityUniformBufferArrayDynamicIndexing,
                                             spv::CapabilityStorageBufferArrayDynamicIndexing,
                                             spv::CapabilityShaderNonUniform,
+                                            spv::CapabilityImage1D,
+                                            spv::CapabilityImageQuery,
+                                            spv::CapabilityStorageImageExtendedFormats,
+                                            spv::CapabilityStorageImageReadWithoutFormat,
+                                            spv::CapabilityStorageImageWriteWithoutFormat,
+                                            spv::CapabilityStorageImageArrayDynamicIndexing,
+                                            spv::CapabilityStorageImageArrayNonUniformIndexing,
                                             spv::CapabilityUniformBufferArrayNonUniformIndexing,
                                             spv::CapabilityStorageBufferArrayNonUniformIndexing,
                                             spv::CapabilitySignedZeroInfNanPreserve,
@@ -71,7 +78,8 @@ constexpr spv::StorageClass storage_classes[] = {spv::StorageClassUniformConstan
                                                  spv::StorageClassCallableDataKHR,
                                                  spv::StorageClassIncomingCallableDataKHR,
                                                  spv::StorageClassHitAttributeKHR,
-                                                 spv::StorageClassShaderRecordBufferKHR};
+                                                 spv::StorageClassShaderRecordBufferKHR,
+                                                 spv::StorageClassImage};
 
 constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,       spv::BuiltInWorkgroupSize,
                                       spv::BuiltInWorkgroupId,         spv::BuiltInLocalInvocationId,
@@ -106,7 +114,7 @@ constexpr spv::Op instructions[] = {
     // types and constants
     spv::OpTypeVoid, spv::OpTypeBool, spv::OpTypeInt, spv::OpTypeFloat, spv::OpTypeVector, spv::OpTypeMatrix,
     spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypePointer, spv::OpTypeFunction,
-    spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef, spv::OpConstantTrue,
+    spv::OpTypeImage, spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef, spv::OpConstantTrue,
     spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull, spv::OpSpecConstantTrue,
     spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite, spv::OpSpecConstantOp,
     // control flow
@@ -119,6 +127,8 @@ constexpr spv::Op instructions[] = {
     spv::OpAtomicIIncrement, spv::OpAtomicIDecrement, spv::OpAtomicIAdd, spv::OpAtomicISub, spv::OpAtomicSMin,
     spv::OpAtomicUMin, spv::OpAtomicSMax, spv::OpAtomicUMax, spv::OpAtomicAnd, spv::OpAtomicOr, spv::OpAtomicXor,
     spv::OpAtomicFAddEXT, spv::OpMemoryBarrier,
+    // images
+    spv::OpImageRead, spv::OpImageWrite, spv::OpImageQuerySize, spv::OpImageTexelPointer,
     // composites
     spv::OpVectorExtractDynamic, spv::OpVectorInsertDynamic, spv::OpVectorShuffle, spv::OpCompositeConstruct,
     spv::OpCompositeExtract, spv::OpCompositeInsert, spv::OpCopyObject, spv::OpCopyLogical, spv::OpTranspose,
@@ -220,6 +230,9 @@ class Checker {
           fail("execution mode " + last_word(mode));
         }
         break;
+      case spv::OpTypeImage:
+        check_image(word(3), word(5), word(6), word(7));
+        break;
       case spv::OpTypePointer:
         check_storage_class(word(2));
         break;
@@ -255,6 +268,15 @@ class Checker {
   void import(std::uint32_t id, const std::string& name) {
     if (name != "GLSL.std.450" && !name.starts_with("NonSemantic.")) fail("extended instruction set " + name);
     sets_[id] = name;
+  }
+
+  void check_image(std::uint32_t dimension, std::uint32_t arrayed, std::uint32_t multisampled,
+                   std::uint32_t sampled) const {
+    if (sampled != 2) fail("OpTypeImage of an image that is sampled");
+    if (multisampled != 0) fail("OpTypeImage with several samples");
+    const bool known =
+        dimension == spv::Dim2D || (arrayed == 0 && (dimension == spv::Dim1D || dimension == spv::Dim3D));
+    if (!known) fail(fmt::format("OpTypeImage of dimension {}{}", dimension, arrayed != 0 ? ", arrayed," : ""));
   }
 
   void check_storage_class(std::uint32_t storage) const {

@@ -68,11 +68,10 @@ Kernel::~Kernel() {
   fs::remove_all(folder_);
 }
 
-void Kernel::run(std::initializer_list<kernel::Resource> resources,
-                 std::initializer_list<std::uint32_t> workgroup_count,
+void Kernel::run(std::span<const kernel::Resource> resources, std::initializer_list<std::uint32_t> workgroup_count,
                  std::span<const std::byte> push_constants) const {
   kernel::Dispatch dispatch;
-  dispatch.resources = resources.begin();
+  dispatch.resources = resources.data();
   dispatch.push_constants = push_constants.data();
   std::copy(workgroup_count.begin(), workgroup_count.end(), dispatch.workgroup_count);
   const std::uint64_t workgroups =

@@ -42,6 +42,10 @@ class Kernel {
   /// Runs workgroup_count[0] * [1] * [2] workgroups with the resources in order of (set, binding, element).
   void run(std::initializer_list<kernel::Resource> resources,
            std::initializer_list<std::uint32_t> workgroup_count = {1},
+           std::span<const std::byte> push_constants = {}) const {
+    run(std::span(resources.begin(), resources.size()), workgroup_count, push_constants);
+  }
+  void run(std::span<const kernel::Resource> resources, std::initializer_list<std::uint32_t> workgroup_count = {1},
            std::span<const std::byte> push_constants = {}) const;
 
   /// Runs a shader of a ray tracing stage once.

@@ -54,12 +54,18 @@ std::string module(const std::string& capability, const std::string& decorations
 TEST_CASE("the empty module is supported") { tandem::cpu::translate(assemble(module("", "", "", "")), "empty"); }
 
 TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
-  check_glsl("layout(binding = 0, rgba8) uniform image2D i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
-             "OpTypeImage is not supported");
+  check_glsl("layout(binding = 0, rgba8) uniform image2DMS i; void main() { imageStore(i, ivec2(0), 0, vec4(0)); }",
+             "capability StorageImageMultisample is not supported");
+  check_glsl("layout(binding = 0, r8) uniform image2D i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
+             "image format");
+  check_glsl("layout(binding = 0, rgba8) uniform imageCube i; void main() { imageStore(i, ivec3(0), vec4(0)); }",
+             "OpTypeImage of dimension 3 is not supported");
+  check_glsl("layout(binding = 0, rgba8) uniform image1DArray i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
+             "OpTypeImage of dimension 0, arrayed, is not supported");
   check_glsl(
       "layout(binding = 0) uniform sampler2D s; layout(binding = 1) buffer B { vec4 b; };\n"
       "void main() { b = textureLod(s, vec2(0), 0.0); }",
-      "OpTypeImage is not supported");
+      "OpTypeImage of an image that is sampled is not supported");
   check_glsl("shared int s[4]; void main() { s[gl_LocalInvocationIndex] = 1; }",
              "storage class Workgroup is not supported");
   check_glsl("void main() { barrier(); }", "OpControlBarrier is not supported");
