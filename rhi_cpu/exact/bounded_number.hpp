@@ -42,6 +42,15 @@ class BoundedNumber {
     return {product, error * slack + std::numeric_limits<double>::min()};
   }
 
+  /// With an infinite error where b may be zero.
+  friend BoundedNumber operator/(const BoundedNumber& a, const BoundedNumber& b) {
+    const double least = std::abs(b.value_) - b.error_;
+    if (!(least > 0)) return {0, std::numeric_limits<double>::infinity()};
+    const double quotient = a.value_ / b.value_;
+    const double error = (a.error_ + std::abs(quotient) * b.error_) / least + std::abs(quotient) * 0x1p-53;
+    return {quotient, error * slack + std::numeric_limits<double>::min()};
+  }
+
  private:
   BoundedNumber(double value, double error) : value_(value), error_(error) {}
 
@@ -62,13 +71,11 @@ inline std::optional<int> sign_of(const BoundedNumber& number) {
 /// The float nearest to numerator / denominator, as that of ExactNumbers; nothing when it is too close to the middle of
 /// two floats to say.
 inline std::optional<float> rounded_quotient(const BoundedNumber& numerator, const BoundedNumber& denominator) {
-  const double least = std::abs(denominator.value()) - denominator.error();
-  if (!(least > 0)) return std::nullopt;
-  const double quotient = numerator.value() / denominator.value();
-  const double error = (numerator.error() + std::abs(quotient) * denominator.error()) / least * (1 + 0x1p-48) +
-                       std::abs(quotient) * 0x1p-51 + std::numeric_limits<double>::min();
-  const auto low = static_cast<float>(quotient - error);
-  const auto high = static_cast<float>(quotient + error);
+  const BoundedNumber quotient = numerator / denominator;
+  // The ends of the interval are rounded too.
+  const double error = quotient.error() + std::abs(quotient.value()) * 0x1p-52;
+  const auto low = static_cast<float>(quotient.value() - error);
+  const auto high = static_cast<float>(quotient.value() + error);
   if (low != high) return std::nullopt;  // or NaN
   return low + 0.0f;
 }

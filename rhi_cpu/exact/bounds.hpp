@@ -7,7 +7,8 @@
 #include <limits>
 #include <span>
 
-#include "rhi_cpu/kernel/trace.hpp"
+#include "rhi_cpu/exact/bounded_number.hpp"
+#include "rhi_cpu/exact/vector.hpp"
 
 namespace tandem::cpu::exact {
 
@@ -39,42 +40,47 @@ struct Interval {
   double last;
 };
 
-/// A ray as bounds are tested against it.
-struct RayLine {
-  explicit RayLine(const kernel::Ray& ray) {
+/// A ray in the space of some bounds, as it is tested against them.
+class RayLine {
+ public:
+  RayLine(const Vector<BoundedNumber>& origin, const Vector<BoundedNumber>& direction);
+
+  /// A t that is not behind the first in the interval at which the ray is in the bounds; infinity when there is
+  /// certainly none.
+  double entry_into(const Bounds& bounds, const Interval& interval) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double first = interval.first;
+    double last = interval.last;
     for (std::size_t i = 0; i < 3; ++i) {
-      origin[i] = double{ray.origin[i]};
-      direction[i] = double{ray.direction[i]};
-      reciprocal[i] = 1 / direction[i];
+      const Axis& axis = axes_[i];
+      const double to_lower = bounds.lower[i] - axis.origin;
+      const double to_upper = bounds.upper[i] - axis.origin;
+      if (axis.is_parallel) {
+        if (to_lower > axis.absolute_error || to_upper < -axis.absolute_error) return infinity;
+        continue;
+      }
+      const double a = to_lower * axis.reciprocal;
+      const double b = to_upper * axis.reciprocal;
+      const double enter = std::min(a, b);
+      const double exit = std::max(a, b);
+      first = std::max(first, enter - (std::abs(enter) * axis.relative_error + axis.absolute_error));
+      last = std::min(last, exit + (std::abs(exit) * axis.relative_error + axis.absolute_error));
     }
+    return first <= last ? first : infinity;
   }
 
-  std::array<double, 3> origin;
-  std::array<double, 3> direction;
-  std::array<double, 3> reciprocal;
+ private:
+  struct Axis {
+    double origin;
+    double reciprocal;      ///< of the direction
+    bool is_parallel;       ///< to the planes of this axis, exactly
+    double relative_error;  ///< of a t
+    double absolute_error;  ///< of a t, or of a position if parallel
+  };
+
+  static Axis axis_of(const BoundedNumber& origin, const BoundedNumber& direction);
+
+  std::array<Axis, 3> axes_;
 };
-
-/// A t that is not behind the first in the interval at which the ray is in the bounds; infinity when there is certainly
-/// none.
-inline double entry_of(const RayLine& ray, const Bounds& bounds, const Interval& interval) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  double first = interval.first;
-  double last = interval.last;
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (ray.direction[i] == 0) {
-      if (ray.origin[i] < bounds.lower[i] || ray.origin[i] > bounds.upper[i]) return infinity;
-      continue;
-    }
-    const double a = (bounds.lower[i] - ray.origin[i]) * ray.reciprocal[i];
-    const double b = (bounds.upper[i] - ray.origin[i]) * ray.reciprocal[i];
-    const double enter = std::min(a, b);
-    const double exit = std::max(a, b);
-    // Three roundings of 2^-53 each, of numbers that are neither too large for double nor, but for what the second term
-    // covers, too small.
-    first = std::max(first, enter - (std::abs(enter) * 0x1p-50 + std::numeric_limits<double>::min()));
-    last = std::min(last, exit + (std::abs(exit) * 0x1p-50 + std::numeric_limits<double>::min()));
-  }
-  return first <= last ? first : infinity;
-}
 
 }  // namespace tandem::cpu::exact

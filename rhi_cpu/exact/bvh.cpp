@@ -6,7 +6,7 @@
 namespace tandem::cpu::exact {
 namespace {
 
-constexpr std::uint32_t largest_leaf = 4;
+constexpr std::uint32_t largest_leaf = 1;
 
 /// Twice the centre.
 double centre(const Bounds& bounds, std::size_t axis) { return bounds.lower[axis] + bounds.upper[axis]; }

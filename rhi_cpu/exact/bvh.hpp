@@ -25,10 +25,9 @@ class Bvh {
 
   /// Calls visit(item) for the items of every leaf whose bounds the ray may meet in the interval, near ones first,
   /// until it returns false. `visit` may shorten the interval.
-  /// @param to_ray takes bounds of the tree into the space of the ray
   /// @return false when visit did
-  template <class ToRay, class Visit>
-  bool traverse(const RayLine& ray, const Interval& interval, const ToRay& to_ray, const Visit& visit) const {
+  template <class Visit>
+  bool traverse(const RayLine& ray, const Interval& interval, const Visit& visit) const {
     struct Entry {
       std::uint32_t node;
       double t;
@@ -38,7 +37,7 @@ class Bvh {
     std::array<Entry, 40> stack;
     std::size_t size = 0;
     const auto entry_into = [&](std::uint32_t node) {
-      return Entry{node, entry_of(ray, to_ray(nodes_[node].bounds), interval)};
+      return Entry{node, ray.entry_into(nodes_[node].bounds, interval)};
     };
     const auto is_met = [&](const Entry& entry) { return entry.t <= interval.last && entry.t < infinity; };
     if (!nodes_.empty()) stack[size++] = entry_into(0);

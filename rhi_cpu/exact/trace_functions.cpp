@@ -98,16 +98,16 @@ bool meet(const Ray& ray, const InstanceTraits& instance, const BoxSet& set, Hit
 template <class OnHit>
 void for_each_hit(const TopLevelScene& scene, const Ray& ray, const Interval& interval, const OnHit& on_hit) {
   if (!is_finite(ray.origin) || !is_finite(ray.direction)) return;
-  const RayLine line(ray);
-  const auto in_world = [](const Bounds& bounds) { return bounds; };
-  scene.bvh.traverse(line, interval, in_world, [&](std::uint32_t active) {
+  const Vector<BoundedNumber> origin{std::span(ray.origin)};
+  const Vector<BoundedNumber> direction{std::span(ray.direction)};
+  scene.bvh.traverse(RayLine(origin, direction), interval, [&](std::uint32_t active) {
     const std::uint32_t instance_index = scene.active_instances[active];
     const InstanceTraits& instance = scene.traits[instance_index];
     // Vulkan specification, "Ray Mask Culling".
     if ((instance.mask & ray.mask) == 0) return true;
     const BottomLevelScene& bottom_level = *instance.bottom_level;
-    const auto from_object = [&](const Bounds& bounds) { return to_world(instance.transform, bounds); };
-    return bottom_level.bvh.traverse(line, interval, from_object, [&](std::uint32_t item) {
+    const RayLine line = to_object(instance.transform, origin, direction);
+    return bottom_level.bvh.traverse(line, interval, [&](std::uint32_t item) {
       const PrimitiveId id = bottom_level.primitives[item];
       Hit hit;
       hit.instance_index = instance_index;

@@ -44,4 +44,17 @@ Bounds to_world(const Transform& transform, const Bounds& bounds) {
   return result;
 }
 
+RayLine to_object(const Transform& transform, const Vector<BoundedNumber>& origin,
+                  const Vector<BoundedNumber>& direction) {
+  if (transform.is_identity) return {origin, direction};
+  const Adjugate<BoundedNumber> adjugate = adjugate_of<BoundedNumber>(transform);
+  const Vector<BoundedNumber> translation(transform.rows[0][3], transform.rows[1][3], transform.rows[2][3]);
+  const auto solve = [&](const Vector<BoundedNumber>& v) {
+    return Vector<BoundedNumber>(dot(adjugate.rows[0], v) / adjugate.determinant,
+                                 dot(adjugate.rows[1], v) / adjugate.determinant,
+                                 dot(adjugate.rows[2], v) / adjugate.determinant);
+  };
+  return {solve(origin - translation), solve(direction)};
+}
+
 }  // namespace tandem::cpu::exact

@@ -49,4 +49,8 @@ Adjugate<Number> adjugate_of(const Transform& transform) {
   return {.rows = {cross(y, z), cross(z, x), cross(x, y)}, .determinant = dot(x, cross(y, z))};
 }
 
+/// A ray of world space against bounds of object space.
+RayLine to_object(const Transform& transform, const Vector<BoundedNumber>& origin,
+                  const Vector<BoundedNumber>& direction);
+
 }  // namespace tandem::cpu::exact
