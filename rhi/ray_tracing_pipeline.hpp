@@ -19,6 +19,9 @@ struct HitGroup {
   ShaderModuleHandle intersection;
 };
 
+/// Callable shaders in flight at once, called by each other: a GPU reserves a stack for them beforehand.
+inline constexpr std::uint32_t max_callable_depth = 8;
+
 /// The shaders of a pipeline. A shader record names one by its position in the list of its kind.
 struct RayTracingPipelineDesc {
   std::vector<ShaderModuleHandle> ray_generation;  ///< at least one

@@ -5,7 +5,7 @@
 
 #include "rhi_vulkan/acceleration_structure.hpp"
 #include "rhi_vulkan/buffer.hpp"
-#include "rhi_vulkan/compute_pipeline.hpp"
+#include "rhi_vulkan/pipeline_layout.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -31,10 +31,10 @@ rhi::BindingKind kind_of(const rhi::PipelineInterface& interface, std::uint32_t 
 
 BindGroup::BindGroup(ContextHandle context, const rhi::BindGroupDesc& desc)
     : rhi::BindGroup(desc), context_(std::move(context)) {
-  const auto& pipeline = own<ComputePipeline>(desc.pipeline, context_, desc.label, "pipeline");
+  const PipelineLayout& layout = layout_of(desc.pipeline, context_, desc.label);
   translating_errors(desc.label, "create the bind group", [&] {
-    set_.emplace(context_->descriptors, pipeline.set_layout(desc.set),
-                 count_descriptors(pipeline.interface(), desc.set));
+    set_.emplace(context_->descriptors, layout.set_layout(desc.set),
+                 count_descriptors(desc.pipeline->interface(), desc.set));
     context_->name(set_->handle(), desc.label);
   });
   write();

@@ -9,6 +9,8 @@
 #include "rhi/validation.hpp"
 #include "rhi_vulkan/bind_group.hpp"
 #include "rhi_vulkan/compute_pipeline.hpp"
+#include "rhi_vulkan/ray_tracing_pipeline.hpp"
+#include "rhi_vulkan/shader_table.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -152,29 +154,59 @@ void CommandList::build(const rhi::AccelerationStructureHandle& handle, const De
   builds_.push_back({std::static_pointer_cast<AccelerationStructure>(handle), instance_count, updates});
 }
 
+void CommandList::bind(vk::PipelineBindPoint point, vk::Pipeline pipeline, const PipelineLayout& layout,
+                       std::span<const rhi::BindGroupHandle> bind_groups, std::span<const std::byte> push_constants) {
+  const vk::raii::CommandBuffer& commands = recording_->commands.handle;
+  commands.bindPipeline(point, pipeline);
+  for (const rhi::BindGroupHandle& group : bind_groups) {
+    const std::uint32_t set = group->desc().set;
+    if (!layout.uses_set(set)) continue;
+    const vk::DescriptorSet handle = own<BindGroup>(group, context_, label(), "bind group").handle();
+    commands.bindDescriptorSets(point, layout.handle(), set, handle, nullptr);
+  }
+  if (!push_constants.empty())
+    commands.pushConstants<std::byte>(layout.handle(), context_->physical.shader_stages, 0,
+                                      {static_cast<std::uint32_t>(push_constants.size()), push_constants.data()});
+  recording_->resources.insert(recording_->resources.end(), bind_groups.begin(), bind_groups.end());
+}
+
 void CommandList::dispatch(const rhi::DispatchDesc& desc) {
   Recording& recording = this->recording();
   rhi::validation::check(desc, context_->physical.info);
   const auto& pipeline = own<ComputePipeline>(desc.pipeline, context_, label(), "pipeline");
-  std::vector<vk::DescriptorSet> sets;
-  for (const rhi::BindGroupHandle& group : desc.bind_groups)
-    sets.push_back(own<BindGroup>(group, context_, label(), "bind group").handle());
-
   recording.resources.push_back(desc.pipeline);
-  recording.resources.insert(recording.resources.end(), desc.bind_groups.begin(), desc.bind_groups.end());
   order(CommandKind::exclusive, {});
-  const vk::raii::CommandBuffer& commands = recording.commands.handle;
-  commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline.handle());
-  for (std::size_t i = 0; i < sets.size(); ++i) {
-    const std::uint32_t set = desc.bind_groups[i]->desc().set;
-    if (pipeline.uses_set(set))
-      commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipeline.layout(), set, sets[i], nullptr);
+  bind(vk::PipelineBindPoint::eCompute, pipeline.handle(), pipeline.layout(), desc.bind_groups, desc.push_constants);
+  recording.commands.handle.dispatch(desc.workgroup_count[0], desc.workgroup_count[1], desc.workgroup_count[2]);
+}
+
+void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
+  Recording& recording = this->recording();
+  rhi::validation::check(desc, context_->physical.info);
+  const auto& table = own<ShaderTable>(desc.table, context_, label(), "shader table");
+  const bool is_indirect = !desc.indirect_size.empty();
+  if (!is_indirect && std::find(desc.size.begin(), desc.size.end(), 0u) != desc.size.end()) return;
+  std::uint64_t size_address = 0;
+  if (is_indirect) {
+    size_address = own<Buffer>(desc.indirect_size.buffer, context_, label(), "buffer of an indirect size").address() +
+                   desc.indirect_size.offset;
+    recording.resources.push_back(desc.indirect_size.buffer);
   }
-  if (!desc.push_constants.empty())
-    commands.pushConstants<std::byte>(
-        pipeline.layout(), vk::ShaderStageFlagBits::eCompute, 0,
-        {static_cast<std::uint32_t>(desc.push_constants.size()), desc.push_constants.data()});
-  commands.dispatch(desc.workgroup_count[0], desc.workgroup_count[1], desc.workgroup_count[2]);
+  recording.resources.push_back(desc.table);
+  order(CommandKind::exclusive, {});
+  const RayTracingPipeline& pipeline = table.pipeline();
+  bind(vk::PipelineBindPoint::eRayTracingKHR, pipeline.handle(), pipeline.layout(), desc.bind_groups,
+       desc.push_constants);
+  const vk::raii::CommandBuffer& commands = recording.commands.handle;
+  if (pipeline.stack_size()) commands.setRayTracingPipelineStackSizeKHR(*pipeline.stack_size());
+  const auto ray_generation = table.ray_generation(desc.ray_generation_record);
+  const auto miss = table.records(GroupKind::miss, desc.first_miss_record);
+  const auto hit = table.records(GroupKind::hit, desc.first_hit_record);
+  const auto callable = table.records(GroupKind::callable, desc.first_callable_record);
+  if (is_indirect)
+    commands.traceRaysIndirectKHR(ray_generation, miss, hit, callable, size_address);
+  else
+    commands.traceRaysKHR(ray_generation, miss, hit, callable, desc.size[0], desc.size[1], desc.size[2]);
 }
 
 void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) {
@@ -221,10 +253,6 @@ void CommandList::copy_to_texture(const rhi::BufferRange&, const rhi::TextureHan
 
 void CommandList::copy_from_texture(const rhi::TextureHandle&, const rhi::BufferRange&) {
   throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
-}
-
-void CommandList::trace_rays(const rhi::TraceRaysDesc&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "ray tracing pipelines are not supported yet");
 }
 
 }  // namespace tandem::vulkan

@@ -9,6 +9,7 @@
 #include "rhi_vulkan/acceleration_structure.hpp"
 #include "rhi_vulkan/command_buffer.hpp"
 #include "rhi_vulkan/dependency_tracker.hpp"
+#include "rhi_vulkan/pipeline_layout.hpp"
 #include "rhi_vulkan/query_pool.hpp"
 #include "rhi_vulkan/transient_memory.hpp"
 
@@ -57,6 +58,8 @@ class CommandList final : public rhi::CommandList {
   Recording& recording();
   /// A barrier where the command that follows needs one.
   void order(CommandKind kind, std::span<const Access> accesses);
+  void bind(vk::PipelineBindPoint point, vk::Pipeline pipeline, const PipelineLayout& layout,
+            std::span<const rhi::BindGroupHandle> bind_groups, std::span<const std::byte> push_constants);
   template <typename Desc>
   void build(const rhi::AccelerationStructureHandle& handle, const Desc& desc,
              vk::BuildAccelerationStructureModeKHR mode);

@@ -18,7 +18,9 @@
 #include "rhi_vulkan/context.hpp"
 #include "rhi_vulkan/fence.hpp"
 #include "rhi_vulkan/query_pool.hpp"
+#include "rhi_vulkan/ray_tracing_pipeline.hpp"
 #include "rhi_vulkan/shader_module.hpp"
+#include "rhi_vulkan/shader_table.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -69,11 +71,13 @@ class Device final : public rhi::Device {
   }
 
   rhi::RayTracingPipelineHandle create_ray_tracing_pipeline(const rhi::RayTracingPipelineDesc& desc) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "ray tracing pipelines are not supported yet");
+    rhi::validation::check(desc, info());
+    return std::make_shared<RayTracingPipeline>(context_, desc);
   }
 
   rhi::ShaderTableHandle create_shader_table(const rhi::ShaderTableDesc& desc) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "ray tracing pipelines are not supported yet");
+    rhi::validation::check(desc, info());
+    return std::make_shared<ShaderTable>(context_, desc);
   }
 
   rhi::BindGroupHandle create_bind_group(const rhi::BindGroupDesc& desc) override {

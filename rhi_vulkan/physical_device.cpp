@@ -115,6 +115,15 @@ std::vector<const char*> extensions_of(const EnabledFeatures& enabled) {
   return extensions;
 }
 
+vk::ShaderStageFlags stages_of(const EnabledFeatures& enabled) {
+  using Stage = vk::ShaderStageFlagBits;
+  vk::ShaderStageFlags stages = Stage::eCompute;
+  if (enabled.ray_tracing_pipeline)
+    stages |= Stage::eRaygenKHR | Stage::eAnyHitKHR | Stage::eClosestHitKHR | Stage::eMissKHR |
+              Stage::eIntersectionKHR | Stage::eCallableKHR;
+  return stages;
+}
+
 rhi::Capabilities capabilities_of(const EnabledFeatures& enabled) {
   rhi::Capabilities capabilities;
   capabilities.ray_query = enabled.ray_query;
@@ -220,6 +229,7 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   device.timestamp_valid_bits = families[*family].timestampValidBits;
   device.timestamp_period = core_properties.limits.timestampPeriod;
   device.scratch_alignment = acceleration.minAccelerationStructureScratchOffsetAlignment;
+  device.shader_stages = stages_of(device.features);
   device.max_allocation_size = vulkan11_properties.maxMemoryAllocationSize;
   device.buffer_image_granularity = core_properties.limits.bufferImageGranularity;
   if (vulkan11_properties.subgroupSupportedStages & vk::ShaderStageFlagBits::eCompute)

@@ -34,6 +34,7 @@ struct PhysicalDevice {
   std::uint64_t scratch_alignment = 1;           ///< of the scratch memory of a build
   std::uint64_t max_allocation_size = 0;         ///< of one vkAllocateMemory
   std::uint64_t buffer_image_granularity = 1;    ///< a page of memory that holds images holds no buffers
+  vk::ShaderStageFlags shader_stages;            ///< that pipelines may have
   std::uint32_t shader_table_alignment = 1;      ///< of the address at which the records of a trace begin
   vk::SubgroupFeatureFlags subgroup_operations;  ///< that compute shaders may use
 };
