@@ -10,7 +10,8 @@ namespace tandem::pathtracer {
 
 struct NamedMaterial {
   std::string name;
-  GpuMaterial material;
+  GpuMaterial material;             ///< without its texture
+  std::filesystem::path alpha_map;  ///< the file of the texture for its opacity (map_d); empty: none
 };
 
 /// Reads a Wavefront MTL file; docs/scenes.md says how its materials are understood. Throws Error, naming file and

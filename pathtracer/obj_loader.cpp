@@ -1,5 +1,6 @@
 #include "pathtracer/obj_loader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,6 +14,7 @@
 #include <tiny_obj_loader.h>
 #include <glm/geometric.hpp>
 
+#include "pathtracer/alpha_texture.hpp"
 #include "pathtracer/mtl_loader.hpp"
 #include "pathtracer/polygon.hpp"
 #include "pathtracer/wavefront_text.hpp"
@@ -20,7 +22,8 @@
 namespace tandem::pathtracer {
 namespace {
 
-constexpr std::uint32_t no_normal = std::numeric_limits<std::uint32_t>::max();
+/// In place of the index of a normal or texture coordinate.
+constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Of a triangle before the first usemtl, until the end of the file.
 constexpr std::uint32_t no_material = triangle_smooth - 1;
 constexpr glm::vec3 grey{0.5f};
@@ -30,7 +33,8 @@ constexpr double largest_coordinate = 1e12;
 /// A triangle whose positions and normals are still numbered as in the file, from 0.
 struct FileTriangle {
   std::array<std::uint32_t, 3> positions;
-  std::array<std::uint32_t, 3> normals;  ///< no_normal where there is none
+  std::array<std::uint32_t, 3> normals;              ///< or none
+  std::array<std::uint32_t, 3> texture_coordinates;  ///< or none
   std::uint32_t material;
 };
 
@@ -38,15 +42,18 @@ struct FileTriangle {
 struct Reading {
   WavefrontText* text = nullptr;
   ObjOptions options;
-  Scene scene;  ///< its name, materials and warnings
+  Scene scene;  ///< its name, materials, textures and warnings
   std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> texture_coordinates;
   std::vector<FileTriangle> triangles;
   std::map<std::string, std::uint32_t, std::less<>> material_names;
   std::uint32_t current_material = no_material;
   std::optional<std::uint32_t> default_material;
   std::set<std::string> libraries;
+  std::map<std::filesystem::path, std::uint32_t> textures;  ///< index of each file, or no_texture
   std::set<std::string> unknown_materials;
+  std::size_t unusable_texture_coordinates = 0;
   std::set<std::string> ignored;  ///< keywords of elements that are no surfaces this loader knows
 };
 
@@ -61,6 +68,21 @@ std::uint32_t default_material(Reading& reading) {
   return *reading.default_material;
 }
 
+std::uint32_t load_texture(Reading& reading, const std::filesystem::path& path) {
+  const auto [entry, is_new] = reading.textures.try_emplace(path, no_texture);
+  if (!is_new) return entry->second;
+  std::error_code status_error;
+  if (!std::filesystem::exists(path, status_error)) {
+    const std::string sentence = fmt::format("the texture '{}' does not exist", path.string());
+    if (!reading.options.allow_missing_mtl) throw reading.text->error(sentence);
+    reading.scene.warnings.push_back(reading.text->error(sentence).what());
+    return no_texture;
+  }
+  reading.scene.alpha_textures.push_back(load_alpha_texture(path));
+  entry->second = static_cast<std::uint32_t>(reading.scene.alpha_textures.size() - 1);
+  return entry->second;
+}
+
 void load_library(Reading& reading, const std::string& name) {
   if (!reading.libraries.insert(name).second) return;
   const std::filesystem::path path = reading.text->path().parent_path() / name;
@@ -71,9 +93,11 @@ void load_library(Reading& reading, const std::string& name) {
     reading.scene.warnings.push_back(reading.text->error(sentence).what());
     return;
   }
-  for (const NamedMaterial& entry : load_mtl(path, reading.scene.warnings))
-    if (!reading.material_names.contains(entry.name))
-      reading.material_names.emplace(entry.name, add_material(reading, entry.name, entry.material));
+  for (NamedMaterial& entry : load_mtl(path, reading.scene.warnings)) {
+    if (reading.material_names.contains(entry.name)) continue;
+    if (!entry.alpha_map.empty()) entry.material.alpha_texture = load_texture(reading, entry.alpha_map);
+    reading.material_names.emplace(entry.name, add_material(reading, entry.name, entry.material));
+  }
 }
 
 /// `names` is one file name, or several without blanks.
@@ -110,6 +134,20 @@ void check_position(const Reading& reading, const Statement& statement) {
   }
 }
 
+/// Exporters write coordinates that are no numbers, where nothing needs them.
+std::string usable_texture_coordinates(Reading& reading, const Statement& statement) {
+  std::string_view rest = statement.rest;
+  std::array<double, 2> values{};
+  bool usable = true;
+  for (double& value : values) {
+    const std::string_view word = take_word(rest);
+    const bool absent = &value == &values[1] && word.empty();  // a texture of one dimension
+    usable = usable && (absent || (parse_number(word, value) && std::isfinite(static_cast<float>(value))));
+  }
+  reading.unusable_texture_coordinates += usable ? 0 : 1;
+  return usable ? fmt::format("vt {} {}", static_cast<float>(values[0]), static_cast<float>(values[1])) : "vt 0 0";
+}
+
 /// Each corner is "v", "v/vt", "v//vn" or "v/vt/vn". Returns the statement without a comment behind it.
 std::string checked_face(const Reading& reading, std::string_view text) {
   text = text.substr(0, text.find('#'));
@@ -137,6 +175,7 @@ std::string filter(Reading& reading, std::string_view text) {
     return std::string(text);
   }
   if (statement.keyword == "vn") return std::string(text);
+  if (statement.keyword == "vt") return usable_texture_coordinates(reading, statement);
   if (statement.keyword == "f") return checked_face(reading, text);
   if (statement.keyword == "usemtl") use_material(reading, statement.rest);
   if (statement.keyword == "mtllib") load_libraries(reading, statement.rest);
@@ -152,19 +191,34 @@ std::uint32_t resolve(const Reading& reading, int index, std::size_t count, std:
   return static_cast<std::uint32_t>(resolved);
 }
 
+bool has_texture(const Reading& reading, std::uint32_t material) {
+  return material != no_material && reading.scene.materials[material].alpha_texture != no_texture;
+}
+
+/// What no texture needs may be wrong.
+std::uint32_t resolve_texture_coordinate(const Reading& reading, int index) {
+  const std::size_t count = reading.texture_coordinates.size();
+  if (index == 0) return none;
+  if (!has_texture(reading, reading.current_material) && std::abs(index) > std::int64_t(count)) return none;
+  return resolve(reading, index, count, "texture coordinate");
+}
+
 void add_face(Reading& reading, std::span<const tinyobj::index_t> corners) {
   if (corners.size() < 3) throw reading.text->error("a face has fewer than three corners");
-  std::vector<std::uint32_t> positions, normals;
+  std::vector<std::uint32_t> positions, normals, texture_coordinates;
   std::vector<glm::vec3> polygon;
   for (const tinyobj::index_t& corner : corners) {
     positions.push_back(resolve(reading, corner.vertex_index, reading.positions.size(), "vertex"));
     normals.push_back(
-        corner.normal_index == 0 ? no_normal : resolve(reading, corner.normal_index, reading.normals.size(), "normal"));
+        corner.normal_index == 0 ? none : resolve(reading, corner.normal_index, reading.normals.size(), "normal"));
+    texture_coordinates.push_back(resolve_texture_coordinate(reading, corner.texcoord_index));
     polygon.push_back(reading.positions[positions.back()]);
   }
   for (const auto& [a, b, c] : triangulate(polygon))
-    reading.triangles.push_back(
-        {{positions[a], positions[b], positions[c]}, {normals[a], normals[b], normals[c]}, reading.current_material});
+    reading.triangles.push_back({{positions[a], positions[b], positions[c]},
+                                 {normals[a], normals[b], normals[c]},
+                                 {texture_coordinates[a], texture_coordinates[b], texture_coordinates[c]},
+                                 reading.current_material});
 }
 
 void parse(Reading& reading) {
@@ -178,6 +232,9 @@ void parse(Reading& reading) {
   };
   callbacks.normal_cb = [](void* data, float x, float y, float z) {
     static_cast<Reading*>(data)->normals.emplace_back(x, y, z);
+  };
+  callbacks.texcoord_cb = [](void* data, float u, float v, float) {
+    static_cast<Reading*>(data)->texture_coordinates.emplace_back(u, v);
   };
   callbacks.index_cb = [](void* data, tinyobj::index_t* corners, int count) {
     add_face(*static_cast<Reading*>(data), {corners, static_cast<std::size_t>(count)});
@@ -218,33 +275,52 @@ bool is_smooth(const Reading& reading, const FileTriangle& triangle) {
   const glm::dvec3 flat = glm::normalize(area);
   bool deviates = false;
   for (const std::uint32_t index : triangle.normals) {
-    if (index == no_normal || reading.normals[index] == glm::vec3(0)) return false;
+    if (index == none || reading.normals[index] == glm::vec3(0)) return false;
     deviates = deviates || glm::length(glm::cross(flat, glm::dvec3(reading.normals[index]))) > 1e-3;
   }
   return deviates;
 }
 
-/// One vertex for each pair of position and normal that the triangles use.
-void assemble(Reading& reading) {
+/// What makes a vertex one of its own: position, normal and texture coordinate.
+using VertexKey = std::array<std::uint32_t, 3>;
+
+struct VertexHash {
+  std::size_t operator()(const VertexKey& key) const noexcept {
+    std::uint64_t hash = 0;
+    for (const std::uint32_t part : key) hash = (hash ^ part) * 0x9e3779b97f4a7c15u;
+    return static_cast<std::size_t>(hash ^ hash >> 32);
+  }
+};
+
+/// One vertex for each combination that the triangles use. Returns how many triangles lack texture coordinates.
+std::size_t assemble(Reading& reading) {
   Scene& scene = reading.scene;
-  std::unordered_map<std::uint64_t, std::uint32_t> vertices;
+  std::size_t lacking = 0;
+  std::unordered_map<VertexKey, std::uint32_t, VertexHash> vertices;
   vertices.reserve(reading.positions.size());
   scene.triangles.reserve(reading.triangles.size());
   for (const FileTriangle& source : reading.triangles) {
     const bool smooth = is_smooth(reading, source);
+    const bool textured = has_texture(reading, source.material);
+    if (textured && std::ranges::count(source.texture_coordinates, none) > 0) ++lacking;
     GpuTriangle triangle{.vertices = {}, .material = source.material | (smooth ? triangle_smooth : 0)};
-    for (int corner = 0; corner < 3; ++corner) {
-      const std::uint32_t normal = smooth ? source.normals[corner] : no_normal;
-      const std::uint64_t key = std::uint64_t{normal} << 32 | source.positions[corner];
-      const auto [entry, is_new] = vertices.try_emplace(key, static_cast<std::uint32_t>(scene.positions.size()));
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t normal = smooth ? source.normals[corner] : none;
+      const std::uint32_t texture_coordinate = textured ? source.texture_coordinates[corner] : none;
+      const auto [entry, is_new] = vertices.try_emplace({source.positions[corner], normal, texture_coordinate},
+                                                        static_cast<std::uint32_t>(scene.positions.size()));
       if (is_new) {
         scene.positions.push_back(reading.positions[source.positions[corner]]);
         scene.normals.push_back(smooth ? reading.normals[normal] : glm::vec3(0, 0, 1));
+        if (!scene.alpha_textures.empty())
+          scene.texture_coordinates.push_back(
+              texture_coordinate == none ? glm::vec2(0) : reading.texture_coordinates[texture_coordinate]);
       }
       triangle.vertices[corner] = entry->second;
     }
     scene.triangles.push_back(triangle);
   }
+  return lacking;
 }
 
 }  // namespace
@@ -268,7 +344,12 @@ Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
   if (!reading.ignored.empty())
     warn(fmt::format("only faces are read, not the elements {}", fmt::join(reading.ignored, ", ")));
   assign_materials(reading);
-  assemble(reading);
+  if (const std::size_t lacking = assemble(reading); lacking > 0)
+    warn(fmt::format(
+        "{} triangles with a texture lack texture coordinates, so they have those of its lower left corner", lacking));
+  if (!reading.scene.alpha_textures.empty() && reading.unusable_texture_coordinates > 0)
+    warn(fmt::format("{} texture coordinates are no finite numbers, and count as 0",
+                     reading.unusable_texture_coordinates));
   return std::move(reading.scene);
 }
 

@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "pathtracer/error.hpp"
-#include "shaders/spirv.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -20,12 +19,14 @@ constexpr std::uint32_t maximum_side = 1u << 16;
 /// Far beyond use, and far from where the counts of rays could overflow.
 constexpr std::uint32_t maximum_depth = 1u << 16;
 
-template <typename T>
-rhi::BufferHandle upload(rhi::Device& device, rhi::CommandList& list, std::span<const T> values, rhi::BufferUsage usage,
-                         const std::string& label) {
-  rhi::BufferHandle buffer = device.create_buffer({.size = values.size_bytes(), .usage = usage, .label = label});
-  list.upload(buffer, 0, std::as_bytes(values));
-  return buffer;
+/// Before the upload: bad settings, and a camera that looks nowhere, are known at once.
+Camera checked_camera(const Scene& scene, const RenderSettings& settings) {
+  check(settings);
+  const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
+  const Camera camera = settings.camera ? *settings.camera : automatic_camera(scene, aspect);
+  RenderConstants constants{};
+  set_camera(constants, camera, settings.width, settings.height);
+  return camera;
 }
 
 std::string text_of(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
@@ -47,82 +48,20 @@ void check(const RenderSettings& settings) {
         throw Error(fmt::format("a background of {} is not finite and at least 0", text_of(*settings.background)));
 }
 
-Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings)
-    : device_(std::move(device)), scene_name_(scene.name) {
-  check(settings);
-  const rhi::DeviceInfo& info = device_->info();
-  if (!info.capabilities.ray_query)
-    throw rhi::Error(rhi::ErrorCode::unsupported, info.name,
-                     "the path tracer needs ray queries, which this device lacks");
-  // Before the upload: a camera that looks nowhere is known at once.
-  camera_ =
-      settings.camera ? *settings.camera : automatic_camera(scene, float(settings.width) / float(settings.height));
-  set_camera(constants_, camera_, settings.width, settings.height);
-  if (info.capabilities.timestamps) timestamps_ = device_->create_query_pool({.count = 2, .label = "dispatch times"});
-  build(scene);
-  pipeline_ = device_->create_compute_pipeline(
-      {.shader = device_->create_shader_module({.spirv = shaders::path_trace(), .label = "path_trace.comp"}),
-       .specialization = {},
-       .label = "path tracer"});
-  scene_group_ = device_->create_bind_group({.pipeline = pipeline_,
-                                             .set = 0,
-                                             .entries = {{.binding = 0, .resource = top_level_},
-                                                         {.binding = 1, .resource = rhi::BufferRange{positions_}},
-                                                         {.binding = 2, .resource = rhi::BufferRange{normals_}},
-                                                         {.binding = 3, .resource = rhi::BufferRange{triangles_}},
-                                                         {.binding = 4, .resource = rhi::BufferRange{materials_}},
-                                                         {.binding = 5, .resource = rhi::BufferRange{lights_}}},
-                                             .label = "scene"});
+Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
+                   std::optional<TraceForm> trace)
+    : device_(std::move(device)),
+      scene_name_(scene.name),
+      camera_(checked_camera(scene, settings)),
+      trace_(choose_trace_form(device_->info(), trace)),
+      scene_(*device_, scene),
+      program_(*device_, trace_, scene_.transparency()) {
+  if (device_->info().capabilities.timestamps)
+    timestamps_ = device_->create_query_pool({.count = 2, .label = "dispatch times"});
+  build_milliseconds_ = execute("build of " + scene_name_, [&](rhi::CommandList& list) { scene_.record_build(list); });
+  scene_group_ = device_->create_bind_group(
+      {.pipeline = program_.pipeline(), .set = 0, .entries = scene_.entries(), .label = "scene"});
   restart(settings);
-}
-
-void Renderer::build(const Scene& scene) {
-  using rhi::BufferUsage;
-  vertex_count_ = static_cast<std::uint32_t>(scene.positions.size());
-  triangle_count_ = static_cast<std::uint32_t>(scene.triangles.size());
-  std::vector<GpuLight> lights = build_lights(scene);
-  light_count_ = static_cast<std::uint32_t>(lights.size());
-  if (lights.empty()) lights.push_back({});  // no buffer may be empty; the shader does not read it
-  std::vector<std::uint32_t> indices;
-  indices.reserve(3 * scene.triangles.size());
-  for (const GpuTriangle& triangle : scene.triangles)
-    indices.insert(indices.end(), std::begin(triangle.vertices), std::end(triangle.vertices));
-
-  const rhi::CommandListHandle list = device_->create_command_list("upload of " + scene_name_);
-  const auto upload_all = [&]<typename T>(const std::vector<T>& values, BufferUsage usage, const char* label) {
-    return upload(*device_, *list, std::span<const T>(values), usage, label);
-  };
-  positions_ =
-      upload_all(scene.positions, BufferUsage::storage | BufferUsage::acceleration_structure_input, "positions");
-  normals_ = upload_all(scene.normals, BufferUsage::storage, "normals");
-  triangles_ = upload_all(scene.triangles, BufferUsage::storage, "triangles");
-  materials_ = upload_all(scene.materials, BufferUsage::storage, "materials");
-  lights_ = upload_all(lights, BufferUsage::storage, "lights");
-  const rhi::BufferHandle index_buffer = upload_all(indices, BufferUsage::acceleration_structure_input, "indices");
-
-  const rhi::BottomLevelDesc bottom{.geometries = {rhi::TriangleGeometry{.vertices = {positions_},
-                                                                         .vertex_count = vertex_count_,
-                                                                         .indices = {index_buffer},
-                                                                         .index_format = rhi::IndexFormat::uint32,
-                                                                         .triangle_count = triangle_count_,
-                                                                         .transform = {},
-                                                                         .flags = rhi::GeometryFlags::opaque}},
-                                    .label = scene_name_};
-  bottom_level_ = device_->create_bottom_level(bottom);
-  const std::vector<rhi::InstanceDesc> instances = {rhi::make_instance(*bottom_level_)};
-  const rhi::BufferHandle instance_buffer =
-      upload_all(instances, BufferUsage::acceleration_structure_input, "instances");
-  rhi::TopLevelDesc top;
-  top.instances.buffer = instance_buffer;
-  top.instance_count = 1;
-  top.label = scene_name_;
-  top_level_ = device_->create_top_level(top);
-  device_->submit(list)->wait();
-
-  build_milliseconds_ = execute("build of " + scene_name_, [&](rhi::CommandList& commands) {
-    commands.build_bottom_level(bottom_level_, bottom);
-    commands.build_top_level(top_level_, top);
-  });
 }
 
 double Renderer::execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record) {
@@ -145,12 +84,13 @@ void Renderer::restart(const RenderSettings& settings) {
   camera_ = camera;
   const bool resized = !picture_group_ || settings.width != settings_.width || settings.height != settings_.height;
   settings_ = settings;
-  background_ = settings.background.value_or(glm::vec3(light_count_ == 0 ? 1.0f : 0.0f));
+  background_ = settings.background.value_or(glm::vec3(scene_.light_count() == 0 ? 1.0f : 0.0f));
   warnings_.clear();
-  if (light_count_ == 0 && !settings.background)
+  if (scene_.light_count() == 0 && !settings.background)
     warnings_.push_back(fmt::format("{}: nothing emits light, so a white background of radiance 1 does", scene_name_));
   constants_.background = background_;
-  constants_.light_count = light_count_;
+  constants_.light_count = scene_.light_count();
+  constants_.opaque_count = scene_.opaque_count();
   constants_.max_depth = settings.max_depth;
   constants_.seed = settings.seed;
   constants_.resolution = {settings.width, settings.height};
@@ -161,7 +101,7 @@ void Renderer::restart(const RenderSettings& settings) {
     ray_counts_ = device_->create_buffer(
         {.size = pixels * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = "ray counts"});
     picture_group_ =
-        device_->create_bind_group({.pipeline = pipeline_,
+        device_->create_bind_group({.pipeline = program_.pipeline(),
                                     .set = 1,
                                     .entries = {{.binding = 0, .resource = rhi::BufferRange{radiance_sum_}},
                                                 {.binding = 1, .resource = rhi::BufferRange{ray_counts_}}},
@@ -195,14 +135,9 @@ void Renderer::dispatch(const Tile& tile, std::uint32_t first_sample, std::uint3
   constants_.sample_count = sample_count;
   constants_.tile_offset = tile.offset;
   constants_.tile_size = tile.size;
-  const std::array<std::uint32_t, 3> workgroup = pipeline_->reflection().workgroup_size;
   const auto start = std::chrono::steady_clock::now();
   device_milliseconds_ += execute("path tracing", [&](rhi::CommandList& list) {
-    list.dispatch({.pipeline = pipeline_,
-                   .bind_groups = {scene_group_, picture_group_},
-                   .push_constants = std::as_bytes(std::span(&constants_, 1)),
-                   .workgroup_count = {(tile.size.x + workgroup[0] - 1) / workgroup[0],
-                                       (tile.size.y + workgroup[1] - 1) / workgroup[1], 1}});
+    program_.record(list, {scene_group_, picture_group_}, constants_);
   });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   pace_.measured(double(tile.size.x) * double(tile.size.y) * sample_count, elapsed.count());
@@ -254,10 +189,11 @@ Image Renderer::image() const {
 ImageMetadata Renderer::metadata() const {
   const rhi::DeviceInfo& device = device_->info();
   return {{"scene", scene_name_},
-          {"triangles", fmt::to_string(triangle_count_)},
+          {"triangles", fmt::to_string(scene_.triangle_count())},
           {"device", device.name},
           {"hardware", device.description},
           {"driver", device.driver},
+          {"trace", std::string(name(trace_))},
           {"size", fmt::format("{}x{}", settings_.width, settings_.height)},
           {"samples", fmt::to_string(samples_)},
           {"depth", fmt::to_string(settings_.max_depth)},

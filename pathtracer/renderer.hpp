@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "pathtracer/camera.hpp"
+#include "pathtracer/device_scene.hpp"
 #include "pathtracer/dispatch_plan.hpp"
 #include "pathtracer/image.hpp"
 #include "pathtracer/image_io.hpp"
-#include "pathtracer/lights.hpp"
+#include "pathtracer/path_trace_program.hpp"
 #include "pathtracer/scene.hpp"
+#include "pathtracer/trace_form.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::pathtracer {
@@ -45,8 +47,10 @@ using Progress = std::function<bool(double fraction)>;
 class Renderer {
  public:
   /// Uploads the scene and builds its acceleration structures. Throws Error for bad settings, rhi::Error for what the
-  /// device refuses (no ray queries, a scene or picture that is too large).
-  Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings);
+  /// device refuses (a form of tracing that it lacks, a scene or picture that is too large).
+  /// @param trace as choose_trace_form takes it
+  Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
+           std::optional<TraceForm> trace = {});
 
   /// Adds `samples` to every pixel. False when `progress` cancelled: the picture is then empty again.
   bool render(std::uint32_t samples, const Progress& progress = {});
@@ -65,14 +69,15 @@ class Renderer {
   double build_milliseconds() const noexcept { return build_milliseconds_; }
 
   const RenderSettings& settings() const noexcept { return settings_; }
+  TraceForm trace() const noexcept { return trace_; }
   const Camera& camera() const noexcept { return camera_; }                        ///< the one in use
   glm::vec3 background() const noexcept { return background_; }                    ///< the one in use
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }  ///< choices the user may not expect
-  /// scene, triangles, device, driver, size, samples, depth, seed, camera, background, rays, milliseconds, version.
+  /// scene, triangles, device, driver, trace, size, samples, depth, seed, camera, background, rays, milliseconds,
+  /// version.
   ImageMetadata metadata() const;
 
  private:
-  void build(const Scene& scene);
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
@@ -81,17 +86,14 @@ class Renderer {
 
   rhi::DeviceHandle device_;
   std::string scene_name_;
-  std::uint32_t vertex_count_ = 0;
-  std::uint32_t triangle_count_ = 0;
-  std::uint32_t light_count_ = 0;
-  RenderSettings settings_;
   Camera camera_;
+  TraceForm trace_;
+  DeviceScene scene_;
+  PathTraceProgram program_;
+  RenderSettings settings_;
   glm::vec3 background_{0};
   std::vector<std::string> warnings_;
 
-  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_;
-  rhi::AccelerationStructureHandle bottom_level_, top_level_;
-  rhi::ComputePipelineHandle pipeline_;
   rhi::BindGroupHandle scene_group_, picture_group_;
   rhi::BufferHandle radiance_sum_, ray_counts_;
   rhi::QueryPoolHandle timestamps_;

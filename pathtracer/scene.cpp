@@ -30,9 +30,15 @@ GpuMaterial diffuse_material(glm::vec3 albedo, glm::vec3 emission) {
           .emission = emission,
           .ior = 1,
           .reflectance = glm::vec3(0),
-          .padding0 = 0,
-          .transmittance = glm::vec3(1),
-          .padding1 = 0};
+          .transmittance = glm::vec3(1)};
+}
+
+bool is_transparent(const GpuMaterial& material) {
+  return material.opacity < 1 || material.alpha_texture != no_texture;
+}
+
+bool is_transparent(const Scene& scene, const GpuTriangle& triangle) {
+  return is_transparent(scene.materials[triangle.material & ~triangle_smooth]);
 }
 
 }  // namespace tandem::pathtracer

@@ -11,17 +11,26 @@ namespace tandem::pathtracer {
 
 enum class MaterialModel : std::uint32_t { diffuse = 0, mirror = 1, dielectric = 2 };
 
+inline constexpr std::uint32_t no_texture = 0xffffffffu;
+
 struct GpuMaterial {
   glm::vec3 base_color;
   MaterialModel model;
   glm::vec3 emission;
   float ior;
   glm::vec3 reflectance;
-  float padding0;
+  float opacity = 1;
   glm::vec3 transmittance;
-  float padding1;
+  std::uint32_t alpha_texture = no_texture;
 };
 static_assert(sizeof(GpuMaterial) == 64);
+
+struct GpuAlphaTexture {
+  std::uint32_t first_texel;
+  std::uint32_t width;
+  std::uint32_t height;
+};
+static_assert(sizeof(GpuAlphaTexture) == 12);
 
 struct GpuLight {
   std::uint32_t triangle;
@@ -53,7 +62,8 @@ struct RenderConstants {
   glm::uvec2 resolution;
   glm::uvec2 tile_offset;
   glm::uvec2 tile_size;
+  std::uint32_t opaque_count;
 };
-static_assert(sizeof(RenderConstants) == 104 && offsetof(RenderConstants, resolution) == 80);
+static_assert(sizeof(RenderConstants) == 108 && offsetof(RenderConstants, resolution) == 80);
 
 }  // namespace tandem::pathtracer

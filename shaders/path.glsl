@@ -27,9 +27,10 @@ precise vec3 drop_negligible(vec3 v) {
 }
 
 /// Radiance that a point on a light, chosen at random, sends by way of the surface to wo (unit, in the frame), over the
-/// density of the choice.
-precise vec3 direct_light(Surface surface, uint triangle, Frame frame, vec3 wo, uvec4 bits, inout uint ray_count) {
-  LightSample light = sample_light(bits);
+/// density of the choice. `depth` is that of the segment that ends at the surface.
+precise vec3 direct_light(Surface surface, uint triangle, Frame frame, vec3 wo, RandomKey key, uint depth,
+                          inout uint ray_count) {
+  LightSample light = sample_light(random_bits(key, light_dimension(depth)));
   if (light.triangle == triangle) return vec3(0.0);
   precise vec3 to_light = light.position - surface.position;
   precise float squared_distance = det_dot(to_light, to_light);
@@ -47,9 +48,9 @@ precise vec3 direct_light(Surface surface, uint triangle, Frame frame, vec3 wo, 
   precise vec3 to = offset_point(light.position, light.normal, light.offset, -wi);
   if (from == to) return vec3(0.0);
   ray_count += 1;
-  if (trace_occluded(from, to)) return vec3(0.0);
+  if (trace_occluded(from, to, key, shadow_dimension(depth))) return vec3(0.0);
   vec3 emission = materials[triangles[light.triangle].material & ~TRIANGLE_SMOOTH].emission;
-  return bsdf_evaluate(surface.material, wo, local_wi) * emission * geometry;
+  return bsdf_evaluate(surface.material, wo, local_wi) * (emission * light.opacity) * geometry;
 }
 
 /// Whether a scattered direction is on the side of the true surface that its lobe says. Interpolated normals can send
@@ -77,7 +78,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
 
   for (uint depth = 0; depth < render.max_depth; ++depth) {
     ray_count += 1;
-    uint triangle = trace_closest(origin, direction);
+    uint triangle = trace_closest(origin, direction, key, segment_dimension(depth));
     if (triangle == NO_TRIANGLE) {
       radiance += throughput * render.background;
       break;
@@ -90,8 +91,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     precise vec3 wo = to_local(frame, -direction);
     bool has_density = bsdf_has_density(surface.material);
     if (has_density && render.light_count != 0) {
-      uvec4 light_bits = random_bits(key, light_dimension(depth));
-      radiance += throughput * direct_light(surface, triangle, frame, wo, light_bits, ray_count);
+      radiance += throughput * direct_light(surface, triangle, frame, wo, key, depth, ray_count);
     }
 
     uvec4 bits = random_bits(key, scattering_dimension(depth));

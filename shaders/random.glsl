@@ -11,7 +11,8 @@ struct RandomKey {
   uint seed;
 };
 
-// The dimensions of a path: one for the camera, then two for each vertex. Each holds four numbers.
+// The dimensions of a path: one for the camera, then two for each vertex. Each holds four numbers. Those of rays that
+// transparent triangles may let pass have a range of their own.
 const uint DIMENSION_CAMERA = 0;
 
 /// Of the vertex at the end of path segment `depth` (0: the camera ray): the scattered direction (x, y, z) and roulette
@@ -20,6 +21,12 @@ uint scattering_dimension(uint depth) { return 1 + 2 * depth; }
 
 /// Of the same vertex: the choice of a light (x, y) and of a point on it (z, w).
 uint light_dimension(uint depth) { return 2 + 2 * depth; }
+
+/// Of path segment `depth`: which transparent triangles it meets.
+uint segment_dimension(uint depth) { return 0x80000000u + 2 * depth; }
+
+/// Of the ray to a light from the vertex at its end: likewise.
+uint shadow_dimension(uint depth) { return 0x80000001u + 2 * depth; }
 
 uvec4 pcg4d(uvec4 v) {
   v = v * 1664525u + 1013904223u;

@@ -14,9 +14,18 @@ struct Material {
   vec3 emission;       // radiance leaving both sides (Ke)
   float ior;           // index of refraction inside, relative to outside (Ni)
   vec3 reflectance;    // of a mirror (Ks)
-  float padding0;
+  float opacity;       // the fraction of a triangle's points, or of the rays through one, that it covers (d)
   vec3 transmittance;  // factor on light refracted by a dielectric (Tf)
-  float padding1;
+  uint alpha_texture;  // index of the texture that the opacity is multiplied by (map_d), or NO_TEXTURE
+};
+
+const uint NO_TEXTURE = 0xffffffffu;
+
+// 8-bit texels, row by row from the top, four to a word from the least significant byte on.
+struct AlphaTexture {
+  uint first_texel;  // index of the upper left one
+  uint width;
+  uint height;
 };
 
 // One entry of the alias table over the emissive triangles (Vose 1991): take a uniform index i and 32 random bits; the
@@ -41,6 +50,10 @@ layout(set = 0, binding = 2, std430) readonly buffer Normals { float normals[]; 
 layout(set = 0, binding = 3, std430) readonly buffer Triangles { Triangle triangles[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Materials { Material materials[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Lights { Light lights[]; };  // light_count of them, never an empty buffer
+// Of transparent triangles only.
+layout(set = 0, binding = 6, std430) readonly buffer TextureCoordinates { float texture_coordinates[]; };  // u, v of each vertex
+layout(set = 0, binding = 7, std430) readonly buffer AlphaTextures { AlphaTexture alpha_textures[]; };
+layout(set = 0, binding = 8, std430) readonly buffer AlphaTexels { uint alpha_texels[]; };
 
 // Pixel (x, y), y downwards, is element y * resolution.x + x.
 layout(set = 1, binding = 0, std430) buffer RadianceSum { float radiance_sum[]; };  // r, g, b of each pixel, added in sample order
@@ -60,6 +73,7 @@ layout(push_constant, std430) uniform RenderConstants {
   uvec2 resolution;
   uvec2 tile_offset;    // first pixel of this dispatch
   uvec2 tile_size;      // its pixels; invocations beyond do nothing
+  uint opaque_count;    // triangles from this index on may be transparent; they are the second geometry
 } render;
 
 #endif

@@ -1,36 +1,21 @@
-// How a ray is traced. The only file that knows: another form (ray tracing pipelines) replaces this one.
+// How a ray is traced, and the only file that knows. An entry point says by macros which way is meant:
+//   TANDEM_TRACE_PIPELINE  a ray tracing pipeline, else ray queries
+//   TANDEM_TRANSPARENCY    triangles from render.opaque_count on may let rays pass, else all are opaque
+// Both ways give the same answers, to the last bit: what decides whether a triangle counts depends on the ray and the
+// triangle only (geometry/opacity.glsl), not on the order in which a device offers them.
 
 #ifndef TANDEM_TRACE
 #define TANDEM_TRACE
 
-#include "scene.glsl"
-
-const uint NO_TRIANGLE = 0xffffffffu;
+#include "trace/triangle_index.glsl"
 
 // Farther than anything in a scene of floats whose squares are floats.
 const float RAY_LENGTH = 1e30;
 
-/// Index of the closest triangle along a ray, or NO_TRIANGLE. Instances hold consecutive triangles from their custom
-/// index on.
-uint trace_closest(vec3 origin, vec3 direction) {
-  rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene_tlas, gl_RayFlagsOpaqueEXT, 0xff, origin, 0.0, direction, RAY_LENGTH);
-  while (rayQueryProceedEXT(query)) {
-  }
-  if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return NO_TRIANGLE;
-  return uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true)) +
-         uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
-}
-
-/// Whether anything lies between two points.
-bool trace_occluded(vec3 from, vec3 to) {
-  precise vec3 direction = to - from;
-  const uint flags = gl_RayFlagsOpaqueEXT | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
-  rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene_tlas, flags, 0xff, from, 0.0, direction, 1.0);
-  while (rayQueryProceedEXT(query)) {
-  }
-  return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
-}
+#ifdef TANDEM_TRACE_PIPELINE
+#include "trace/pipeline.glsl"
+#else
+#include "trace/query.glsl"
+#endif
 
 #endif

@@ -50,8 +50,8 @@ std::string table(const BenchReport& report) {
   }
   text += '\n';
   for (const BenchSeries& series : report.series) {
-    fmt::format_to(std::back_inserter(text), "{:<12}{}, {}\n", series.device.name, series.device.description,
-                   series.device.driver);
+    fmt::format_to(std::back_inserter(text), "{:<12}{}, {}, trace {}\n", series.device.name, series.device.description,
+                   series.device.driver, pathtracer::name(series.trace));
   }
   return text;
 }
@@ -71,6 +71,7 @@ nlohmann::ordered_json to_json(const BenchReport& report) {
   for (const BenchSeries& series : report.series) {
     const Spread times = spread(series.milliseconds);
     nlohmann::ordered_json entry = to_json(series.device);
+    entry["trace"] = pathtracer::name(series.trace);
     entry["ms"] = spread_json(times);
     entry["ms_rounds"] = series.milliseconds;
     entry["build_ms"] = series.build_milliseconds;

@@ -31,9 +31,11 @@ int measure_speed(const Options& options) {
   std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
   for (const std::string& name : options.devices) {
     const rhi::DeviceHandle device = open_device(name, options.render);
-    renderers.push_back(std::make_unique<pathtracer::Renderer>(device, scene, settings));
-    report.series.push_back(
-        {.device = device->info(), .build_milliseconds = renderers.back()->build_milliseconds(), .milliseconds = {}});
+    renderers.push_back(std::make_unique<pathtracer::Renderer>(device, scene, settings, options.render.trace));
+    report.series.push_back({.device = device->info(),
+                             .trace = renderers.back()->trace(),
+                             .build_milliseconds = renderers.back()->build_milliseconds(),
+                             .milliseconds = {}});
   }
   print_warnings(renderers.front()->warnings());
 

@@ -23,6 +23,8 @@ struct Options {
   RenderOptions render;
   std::string a = "cpu";
   std::string b = "vulkan";
+  std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of `render`
+  std::optional<pathtracer::TraceForm> trace_b;
   std::filesystem::path json;    ///< empty: none
   std::filesystem::path folder;  ///< empty: no images
   compare::Tolerance tolerance;
@@ -46,6 +48,7 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
   };
   const auto metadata = [&report] {
     pathtracer::ImageMetadata both = report.a.metadata;
+    if (report.a.trace != report.b.trace) both.erase("trace");
     both["device"] = report.a.device.name + " minus " + report.b.device.name;
     return both;
   };
@@ -66,8 +69,8 @@ int compare_devices(const Options& options) {
   // Both before the first rendering, so that a wrong name or a picture too large for one of them does not cost any.
   const rhi::DeviceHandle device_a = open_device(options.a, options.render);
   const rhi::DeviceHandle device_b = open_device(options.b, options.render);
-  pathtracer::Renderer renderer_a(device_a, scene, settings);
-  pathtracer::Renderer renderer_b(device_b, scene, settings);
+  pathtracer::Renderer renderer_a(device_a, scene, settings, options.trace_a ? options.trace_a : options.render.trace);
+  pathtracer::Renderer renderer_b(device_b, scene, settings, options.trace_b ? options.trace_b : options.render.trace);
   DiffReport report;
   const std::vector<OutputFile> files = output_files(options, report);
   const std::optional<OutputFolder> folder =
@@ -95,6 +98,8 @@ void add_diff_command(CLI::App& app, Action& action) {
   add_render_options(*command, options->render);
   command->add_option("--a", options->a, "The first device, the reference")->type_name("D1")->capture_default_str();
   command->add_option("--b", options->b, "The second device")->type_name("D2")->capture_default_str();
+  add_trace_form(*command, "--trace-a", options->trace_a, "As --trace, for the first device only");
+  add_trace_form(*command, "--trace-b", options->trace_b, "As --trace, for the second device only");
   command->add_option("--json", options->json, "Write all numbers and the verdict as JSON")->type_name("FILE");
   command
       ->add_option("--out", options->folder,
@@ -115,6 +120,7 @@ void add_diff_command(CLI::App& app, Action& action) {
       "Examples:\n"
       "  tandem diff scenes/cornell_box.obj --a cpu --b vulkan\n"
       "  tandem diff scenes/cornell_box.obj --a vulkan:0 --b vulkan:1 --spp 64 --json diff.json --out diff\n"
+      "  tandem diff scenes/grille.obj --a cpu --trace-a query --b cpu --trace-b pipeline --min-bit-equal 1\n"
       "  tandem diff model.obj --a cpu --b vulkan --min-bit-equal 0.9999");
   command->callback([&action, options] { action = [options] { return compare_devices(*options); }; });
 }

@@ -24,16 +24,16 @@ int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
   const pathtracer::Scene scene = load_scene(options.render);
   const rhi::DeviceHandle device = open_device(options.device, options.render);
-  pathtracer::Renderer renderer(device, scene, render_settings(options.render, scene));
+  pathtracer::Renderer renderer(device, scene, render_settings(options.render, scene), options.render.trace);
   const Rendering rendering = render(renderer, device->info(), options.render.samples);
   print_warnings(rendering.warnings);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {
                           pathtracer::write_image(path, rendering.image, rendering.metadata);
                         }};
   write_or_rescue({&file, 1});
-  fmt::print("{}: {}x{}, {} spp on {} ({}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
+  fmt::print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
              options.render.size.x, options.render.size.y, options.render.samples, rendering.device.name,
-             rendering.device.description, rendering.milliseconds,
+             rendering.device.description, pathtracer::name(rendering.trace), rendering.milliseconds,
              per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
   return exit_code::success;
 }

@@ -48,6 +48,7 @@ std::string table(const DiffReport& report) {
   columns("device", report.a.device.name, report.b.device.name);
   columns("hardware", report.a.device.description, report.b.device.description);
   columns("driver", report.a.device.driver, report.b.device.driver);
+  columns("trace", std::string(pathtracer::name(report.a.trace)), std::string(pathtracer::name(report.b.trace)));
   columns("time", fmt::format("{:.2f} ms", report.a.milliseconds), fmt::format("{:.2f} ms", report.b.milliseconds));
   columns("rays", fmt::format("{}", report.a.rays), fmt::format("{}", report.b.rays));
   columns("speed", fmt::format("{:.3f} Mrays/s", mrays(report.a)), fmt::format("{:.3f} Mrays/s", mrays(report.b)));
@@ -98,6 +99,8 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
   json["mrays_b"] = mrays(report.b);
   json["device_a"] = to_json(report.a.device);
   json["device_b"] = to_json(report.b.device);
+  json["trace_a"] = pathtracer::name(report.a.trace);
+  json["trace_b"] = pathtracer::name(report.b.trace);
   json["settings"] = {{"scene", options.scene.string()},
                       {"triangles", report.triangles},
                       {"width", options.size.x},

@@ -17,7 +17,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->required()
       ->type_name("FILE.obj");
   command.add_flag("--allow-missing-mtl", options.allow_missing_mtl,
-                   "Go on with grey materials, and a warning, where an MTL file is not there");
+                   "Go on with grey or opaque materials, and a warning, where an MTL file or a texture is not there");
   const auto group = [&](const char* name) { return command.add_option_group(name); };
 
   CLI::App& image = *group("Image");
@@ -41,8 +41,24 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   CLI::App& execution = *group("Execution");
   add_whole_number(execution, "--threads", options.threads, 0, most_threads,
                    "Worker threads of the CPU device; 0: as many as the machine has");
+  add_trace_form(execution, "--trace", options.trace,
+                 "How rays are traced: query (ray queries) or pipeline (a ray tracing pipeline); the image is the same "
+                 "[what the device has, query first]");
   execution.add_flag("--validation", options.validation,
                      "Turn the Vulkan validation layers on; their messages go to standard error");
+}
+
+void add_trace_form(CLI::App& command, const std::string& name, std::optional<pathtracer::TraceForm>& value,
+                    const std::string& description) {
+  const auto read = [name, &value](const std::string& text) {
+    for (const pathtracer::TraceForm form : {pathtracer::TraceForm::query, pathtracer::TraceForm::pipeline}) {
+      if (text != pathtracer::name(form)) continue;
+      value = form;
+      return;
+    }
+    throw CLI::ValidationError(name, "'" + text + "' is neither 'query' nor 'pipeline'");
+  };
+  command.add_option_function<std::string>(name, read, description)->type_name("FORM");
 }
 
 }  // namespace tandem::tools

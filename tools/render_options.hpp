@@ -7,6 +7,8 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
+#include "pathtracer/trace_form.hpp"
+
 namespace tandem::tools {
 
 /// What render, diff and bench have in common: a scene and how it is seen.
@@ -18,14 +20,19 @@ struct RenderOptions {
   std::uint32_t seed = 0;
   std::optional<glm::vec3> camera_position;  ///< in the scene's units; none: the automatic camera
   std::optional<glm::vec3> camera_target;
-  std::optional<float> field_of_view;   ///< vertical, degrees
-  std::optional<glm::vec3> background;  ///< radiance
-  std::uint32_t threads = 0;            ///< of the CPU device; 0: all
-  bool validation = false;              ///< Vulkan validation layers
-  bool allow_missing_mtl = false;       ///< a missing MTL file is a warning
+  std::optional<float> field_of_view;          ///< vertical, degrees
+  std::optional<glm::vec3> background;         ///< radiance
+  std::uint32_t threads = 0;                   ///< of the CPU device; 0: all
+  std::optional<pathtracer::TraceForm> trace;  ///< none: what the device has, ray queries first
+  bool validation = false;                     ///< Vulkan validation layers
+  bool allow_missing_mtl = false;              ///< a missing MTL file or texture is a warning
 };
 
 /// Declares SCENE and the options on the command. `options` must outlive the parsing.
 void add_render_options(CLI::App& command, RenderOptions& options);
+
+/// An option whose value is the name of a form of tracing.
+void add_trace_form(CLI::App& command, const std::string& name, std::optional<pathtracer::TraceForm>& value,
+                    const std::string& description);
 
 }  // namespace tandem::tools

@@ -73,6 +73,7 @@ Rendering render(pathtracer::Renderer& renderer, const rhi::DeviceInfo& device, 
   render_samples(renderer, samples, device.name);
   return {.image = renderer.image(),
           .device = device,
+          .trace = renderer.trace(),
           .camera = renderer.camera(),
           .background = renderer.background(),
           .milliseconds = renderer.device_milliseconds(),

@@ -3,6 +3,7 @@
 #ifndef TANDEM_LIGHT_EMISSIVE_TRIANGLES
 #define TANDEM_LIGHT_EMISSIVE_TRIANGLES
 
+#include "geometry/opacity.glsl"
 #include "geometry/surface.glsl"
 #include "random.glsl"
 #include "sampling/alias_table.glsl"
@@ -14,6 +15,7 @@ struct LightSample {
   vec3 normal;         // unit, of either side
   float offset;        // offset_distance of the position
   float area_density;  // of the position, per unit area over all lights
+  float opacity;       // at the position: the fraction of its emission that leaves it
 };
 
 /// A point on a light; the lights weighted as their alias table says. There is at least one light.
@@ -27,9 +29,11 @@ precise LightSample sample_light(uvec4 bits) {
   TriangleVertices triangle = triangle_vertices(triangles[light.triangle].vertices);
   float u = unit_interval(bits.z);
   float v = unit_interval(bits.w);
-  light.position = barycentric_point(triangle, uniform_triangle(vec2(u, v)));
+  vec2 barycentrics = uniform_triangle(vec2(u, v));
+  light.position = barycentric_point(triangle, barycentrics);
   light.normal = triangle_normal(triangle, vec3(0.0, 0.0, 1.0));
   light.offset = offset_distance(light.position, light.normal, triangle_extent(triangle));
+  light.opacity = opacity_at(light.triangle, barycentrics);
   return light;
 }
 

@@ -15,7 +15,7 @@ using namespace tandem::pathtracer;
 namespace {
 
 spirv_cross::Compiler reflect_shader() {
-  const auto words = tandem::shaders::path_trace();
+  const auto words = tandem::shaders::path_trace_transparent();
   return spirv_cross::Compiler(std::vector<std::uint32_t>(words.begin(), words.end()));
 }
 
@@ -64,15 +64,16 @@ TEST_CASE("The push constants of the shader are RenderConstants") {
                             {"light_count", offsetof(RenderConstants, light_count)},
                             {"resolution", offsetof(RenderConstants, resolution)},
                             {"tile_offset", offsetof(RenderConstants, tile_offset)},
-                            {"tile_size", offsetof(RenderConstants, tile_size)}};
+                            {"tile_size", offsetof(RenderConstants, tile_size)},
+                            {"opaque_count", offsetof(RenderConstants, opaque_count)}};
   CHECK(offsets_of(compiler, compiler.get_type(blocks[0].base_type_id)) == expected);
-  CHECK(tandem::rhi::reflect(tandem::shaders::path_trace(), "path_trace.comp").push_constant_size ==
-        sizeof(RenderConstants));
+  CHECK(tandem::rhi::reflect(tandem::shaders::path_trace_transparent(), "path_trace_transparent.comp")
+            .push_constant_size == sizeof(RenderConstants));
 }
 
 TEST_CASE("The structures of the shader's buffers are those of the host") {
   const std::map<std::uint32_t, Element> elements = storage_elements(reflect_shader());
-  REQUIRE(elements.size() == 5);
+  REQUIRE(elements.size() == 8);
   CHECK(elements.at(1).stride == sizeof(float));
   CHECK(elements.at(2).stride == sizeof(float));
   CHECK(elements.at(3).stride == sizeof(GpuTriangle));
@@ -84,12 +85,18 @@ TEST_CASE("The structures of the shader's buffers are those of the host") {
                                           {"emission", offsetof(GpuMaterial, emission)},
                                           {"ior", offsetof(GpuMaterial, ior)},
                                           {"reflectance", offsetof(GpuMaterial, reflectance)},
-                                          {"padding0", offsetof(GpuMaterial, padding0)},
+                                          {"opacity", offsetof(GpuMaterial, opacity)},
                                           {"transmittance", offsetof(GpuMaterial, transmittance)},
-                                          {"padding1", offsetof(GpuMaterial, padding1)}});
+                                          {"alpha_texture", offsetof(GpuMaterial, alpha_texture)}});
   CHECK(elements.at(5).stride == sizeof(GpuLight));
   CHECK(elements.at(5).offsets == Offsets{{"triangle", offsetof(GpuLight, triangle)},
                                           {"alias", offsetof(GpuLight, alias)},
                                           {"threshold", offsetof(GpuLight, threshold)},
                                           {"area_density", offsetof(GpuLight, area_density)}});
+  CHECK(elements.at(6).stride == sizeof(float));
+  CHECK(elements.at(7).stride == sizeof(GpuAlphaTexture));
+  CHECK(elements.at(7).offsets == Offsets{{"first_texel", offsetof(GpuAlphaTexture, first_texel)},
+                                          {"width", offsetof(GpuAlphaTexture, width)},
+                                          {"height", offsetof(GpuAlphaTexture, height)}});
+  CHECK(elements.at(8).stride == sizeof(std::uint32_t));
 }

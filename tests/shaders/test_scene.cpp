@@ -74,9 +74,7 @@ GpuMaterial diffuse(const glm::vec3& albedo, const glm::vec3& emission) {
           .emission = emission,
           .ior = 1.0f,
           .reflectance = glm::vec3(0),
-          .padding0 = 0.0f,
-          .transmittance = glm::vec3(1),
-          .padding1 = 0.0f};
+          .transmittance = glm::vec3(1)};
 }
 
 GpuMaterial mirror(const glm::vec3& reflectance) {
@@ -141,7 +139,8 @@ RenderConstants render_constants(const glm::vec3& position, std::uint32_t width,
           .light_count = static_cast<std::uint32_t>(scene.lights.size()),
           .resolution = {width, height},
           .tile_offset = {0, 0},
-          .tile_size = {width, height}};
+          .tile_size = {width, height},
+          .opaque_count = static_cast<std::uint32_t>(scene.triangles.size())};
 }
 
 Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches) {

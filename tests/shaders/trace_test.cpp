@@ -77,9 +77,9 @@ void main() {
   vec3 local = cosine_hemisphere(queries[row].direction);
   vec3 direction = det_normalize(to_world(make_frame(from_normal), vec3(local.xy, local.z * queries[row].flatness)), from_normal);
   vec3 origin = offset_point(from, from_normal, from_offset, direction);
-  uint hit = trace_closest(origin, direction);
+  uint hit = trace_closest(origin, direction, RandomKey(0, 0, 0), 0);
   bool occluded = trace_occluded(offset_point(from, from_normal, from_offset, from_normal),
-                                 offset_point(to, to_normal, to_offset, to_normal));
+                                 offset_point(to, to_normal, to_offset, to_normal), RandomKey(0, 0, 0), 0);
   answers[row] = (hit == queries[row].triangles.x ? 1u : 0u) | (hit == NO_TRIANGLE ? 2u : 0u) | (occluded ? 4u : 0u);
 }
 )";

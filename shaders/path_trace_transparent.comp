@@ -1,0 +1,12 @@
+// Path tracing by ray queries, for scenes with transparent triangles.
+#version 460
+#extension GL_EXT_ray_query : require
+#extension GL_GOOGLE_include_directive : require
+
+#define TANDEM_TRANSPARENCY
+
+layout(local_size_x = 8, local_size_y = 8) in;
+
+#include "path_trace.glsl"
+
+void main() { path_trace(gl_GlobalInvocationID.xy); }

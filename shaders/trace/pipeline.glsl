@@ -1,0 +1,40 @@
+// Tracing through a ray tracing pipeline, from its ray generation shader. The functions are those of trace/query.glsl.
+
+#ifndef TANDEM_TRACE_PIPELINE_FORM
+#define TANDEM_TRACE_PIPELINE_FORM
+
+#include "random.glsl"
+#include "scene.glsl"
+#include "trace/payload.glsl"
+#include "trace/triangle_index.glsl"
+
+layout(location = 0) rayPayloadEXT RayPayload ray_payload;
+
+#ifdef TANDEM_TRANSPARENCY
+const uint OPACITY_FLAGS = gl_RayFlagsNoneEXT;
+#else
+const uint OPACITY_FLAGS = gl_RayFlagsOpaqueEXT;
+#endif
+
+uint trace_closest(vec3 origin, vec3 direction, RandomKey key, uint dimension) {
+  ray_payload.triangle = NO_TRIANGLE;
+#ifdef TANDEM_TRANSPARENCY
+  ray_payload.random = random_bits(key, dimension).x;
+#endif
+  traceRayEXT(scene_tlas, OPACITY_FLAGS, 0xff, 0, 0, 0, origin, 0.0, direction, RAY_LENGTH, 0);
+  return ray_payload.triangle;
+}
+
+bool trace_occluded(vec3 from, vec3 to, RandomKey key, uint dimension) {
+  precise vec3 direction = to - from;
+  const uint flags = OPACITY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
+  // No closest-hit shader runs: what the miss shader does not change is a hit.
+  ray_payload.triangle = 0;
+#ifdef TANDEM_TRANSPARENCY
+  ray_payload.random = random_bits(key, dimension).x;
+#endif
+  traceRayEXT(scene_tlas, flags, 0xff, 0, 0, 0, from, 0.0, direction, 1.0, 0);
+  return ray_payload.triangle != NO_TRIANGLE;
+}
+
+#endif
