@@ -36,6 +36,8 @@ void validate(std::span<const std::uint32_t> spirv, const std::string& label) {
   });
   spvtools::ValidatorOptions options;
   options.SetScalarBlockLayout(true);
+  // glslang passes elements of arrays to functions, such as ray queries, which the rules of logical addressing forbid.
+  options.SetBeforeHlslLegalization(true);
   if (!tools.Validate(spirv.data(), spirv.size(), options)) fail(label, "the SPIR-V is not valid: " + first_message);
 }
 

@@ -26,6 +26,11 @@ void Printer::print_ray_query(spv::Op op, Operands ops) {
     case spv::OpRayQueryConfirmIntersectionKHR:
       statement("k::rayQueryConfirmIntersectionEXT(", value(ops[0]), ");");
       return;
+    case spv::OpRayQueryGenerateIntersectionKHR:
+      statement("k::rayQueryGenerateIntersectionEXT(", value(ops[0]), ", ", value(ops[1]), ");");
+      return;
+    case spv::OpRayQueryGetIntersectionCandidateAABBOpaqueKHR:
+      return getter("IntersectionCandidateAABBOpaque", false);
     case spv::OpRayQueryProceedKHR:
       return define(ops[0], ops[1], fmt::format("k::rayQueryProceedEXT({})", value(ops[2])));
     case spv::OpRayQueryGetRayTMinKHR:

@@ -157,6 +157,7 @@ constexpr spv::Op instructions[] = {
     spv::OpTerminateRayKHR,
     // ray queries
     spv::OpRayQueryInitializeKHR, spv::OpRayQueryTerminateKHR, spv::OpRayQueryConfirmIntersectionKHR,
+    spv::OpRayQueryGenerateIntersectionKHR, spv::OpRayQueryGetIntersectionCandidateAABBOpaqueKHR,
     spv::OpRayQueryProceedKHR, spv::OpRayQueryGetIntersectionTypeKHR, spv::OpRayQueryGetRayTMinKHR,
     spv::OpRayQueryGetRayFlagsKHR, spv::OpRayQueryGetIntersectionTKHR,
     spv::OpRayQueryGetIntersectionInstanceCustomIndexKHR, spv::OpRayQueryGetIntersectionInstanceIdKHR,

@@ -53,6 +53,11 @@ TEST_CASE("queries and structures go through variables, arrays and parameters") 
       rayQueryInitializeEXT(query, scene, gl_RayFlagsOpaqueEXT, 0x7f, origin, 0.125, direction, 100.0);
       rayQueryProceedEXT(query);
     }
+    float start_one(rayQueryEXT query, float x, float t_max) {
+      start(query, vec3(x, 0, 0), vec3(0, 0, 1));
+      if (t_max == 9.0) return rayQueryGetIntersectionTEXT(query, true);
+      return -rayQueryGetIntersectionTEXT(query, true);
+    }
     bool hits(rayQueryEXT query) {
       return rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT;
     }
@@ -80,6 +85,7 @@ TEST_CASE("queries and structures go through variables, arrays and parameters") 
       mat4x3 to_world = rayQueryGetIntersectionObjectToWorldEXT(one, true);
       result[18] = to_world[3][2];
       result[19] = rayQueryGetIntersectionWorldToObjectEXT(one, true)[3].y;
+      result[20] = start_one(many[n], float(n), 9.0); result[21] = start_one(many[0], 5.0, 0.5);
     })");
   std::vector<float> result(30);
   kernel::TopLevel* const scene = const_cast<kernel::TopLevel*>(scenes);
@@ -87,8 +93,65 @@ TEST_CASE("queries and structures go through variables, arrays and parameters") 
               {reinterpret_cast<std::byte*>(scene), 0},
               {reinterpret_cast<std::byte*>(scene + 1), 0},
               resource(result)});
-  result.resize(20);
-  CHECK(result == std::vector<float>{1, 0, 1, 6, 16, 0.125f, 1, 4, 0.5f, 42, 1, 77, 5, 9, 0.5f, 1, -25, 1, 30, -20});
+  result.resize(22);
+  CHECK(result ==
+        std::vector<float>{1, 0, 1, 6, 16, 0.125f, 1, 4, 0.5f, 42, 1, 77, 5, 9, 0.5f, 1, -25, 1, 30, -20, 2, -10});
+}
+
+/// Two boxes, an opaque one at t = 2 and one that is not at t = 3, then a triangle that needs a confirmation at t = 4.
+std::uint32_t next_candidates(const kernel::TopLevel&, const kernel::Ray&, const kernel::Hit* previous,
+                              kernel::Hit* hits, std::uint32_t capacity) {
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < 3 && count < capacity; ++i) {
+    const float t = static_cast<float>(i + 2);
+    if (previous != nullptr && t <= previous->t) continue;
+    hits[count++] = {.t = t,
+                     .barycentrics = {0, 0},
+                     .instance_index = 0,
+                     .geometry_index = 0,
+                     .primitive_index = i,
+                     .front_face = true,
+                     .opaque = i == 0,
+                     .is_box = i < 2};
+  }
+  return count;
+}
+
+TEST_CASE("candidates are asked for, confirmed and generated, with structures from an array under any index") {
+  constexpr kernel::TraceFunctions with_candidates = {closest, occluded, next_candidates, nullptr};
+  const kernel::TopLevel scenes[2] = {{&functions, instances, 2, true, false},
+                                      {&with_candidates, instances, 2, false, true}};
+  const Kernel kernel(R"(
+    #extension GL_EXT_ray_query : require
+    #extension GL_EXT_nonuniform_qualifier : require
+    layout(local_size_x = 2) in;
+    layout(binding = 0) uniform accelerationStructureEXT scenes[2];
+    layout(std430, binding = 1) buffer Result { float result[]; };
+    void main() {
+      uint n = gl_LocalInvocationIndex;
+      rayQueryEXT query;
+      rayQueryInitializeEXT(query, scenes[nonuniformEXT(n)], 0u, 0x7f, vec3(1), 0.0, vec3(0, 0, 1), 100.0);
+      uint i = n * 16;
+      while (rayQueryProceedEXT(query)) {
+        uint type = rayQueryGetIntersectionTypeEXT(query, false);
+        result[i++] = float(type) + 10.0 * float(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+        if (type == gl_RayQueryCandidateIntersectionAABBEXT) {
+          result[i++] = float(rayQueryGetIntersectionCandidateAABBOpaqueEXT(query));
+          rayQueryGenerateIntersectionEXT(query, 5.5 - float(i - n * 16));
+        } else {
+          rayQueryConfirmIntersectionEXT(query);
+        }
+      }
+      result[i++] = float(rayQueryGetIntersectionTypeEXT(query, true));
+      result[i++] = rayQueryGetIntersectionTEXT(query, true);
+    })");
+  std::vector<float> result(32, -1);
+  kernel.run({{const_cast<std::byte*>(reinterpret_cast<const std::byte*>(&scenes[0])), 0},
+              {const_cast<std::byte*>(reinterpret_cast<const std::byte*>(&scenes[1])), 0},
+              resource(result)});
+  CHECK(std::vector<float>(result.begin(), result.begin() + 3) == std::vector<float>{1, 2, -1});
+  // The second box is generated at 1.5 instead of 3.5, and what is behind is met no more.
+  CHECK(std::vector<float>(result.begin() + 16, result.begin() + 23) == std::vector<float>{1, 1, 11, 0, 2, 1.5f, -1});
 }
 
 }  // namespace

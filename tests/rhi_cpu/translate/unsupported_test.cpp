@@ -82,14 +82,6 @@ TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
       "};\n"
       "void main() { b = float(float16_t(b) * float16_t(2)); }",
       "capability Float16 is not supported");
-  const std::string ray_query =
-      "#extension GL_EXT_ray_query : require\nlayout(binding = 0) uniform accelerationStructureEXT a;\n"
-      "layout(binding = 1) buffer B { bool opaque_aabb; } b; void main() { rayQueryEXT q;\n"
-      "rayQueryInitializeEXT(q, a, 0, 255, vec3(0), 0.0, vec3(1), 1.0); rayQueryProceedEXT(q); ";
-  check_glsl(ray_query + "rayQueryGenerateIntersectionEXT(q, 0.5); }",
-             "OpRayQueryGenerateIntersectionKHR is not supported");
-  check_glsl(ray_query + "if (rayQueryGetIntersectionCandidateAABBOpaqueEXT(q)) rayQueryTerminateEXT(q); }",
-             "OpRayQueryGetIntersectionCandidateAABBOpaqueKHR is not supported");
 }
 
 TEST_CASE("capabilities, models, modes, storage classes, decorations and built-ins are named") {
