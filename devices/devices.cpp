@@ -1,5 +1,7 @@
 #include "devices/devices.hpp"
 
+#include <algorithm>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -12,14 +14,16 @@
 namespace tandem {
 
 std::vector<rhi::DeviceInfo> enumerate_devices(const rhi::MessageCallback& on_message) {
-  std::vector<rhi::DeviceInfo> devices = {cpu::device_info()};
+  std::vector<rhi::DeviceInfo> devices;
+  for (const std::string_view name : cpu::device_names()) devices.push_back(cpu::device_info(name));
   for (rhi::DeviceInfo& device : vulkan::enumerate(on_message)) devices.push_back(std::move(device));
   return devices;
 }
 
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   const std::string_view name = desc.name;
-  if (name == "cpu") {
+  const std::span<const std::string_view> cpu_names = cpu::device_names();
+  if (std::find(cpu_names.begin(), cpu_names.end(), name) != cpu_names.end()) {
     const std::span<const cpu::PrecompiledKernel> kernels = shaders::kernels();
     return cpu::create_device(desc, {kernels.begin(), kernels.end()});
   }

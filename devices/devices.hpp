@@ -7,8 +7,8 @@
 /// The factory: the only code outside the backends that knows which backends exist.
 namespace tandem {
 
-/// Every device present that qualifies, the CPU first. A backend that cannot even be asked (no Vulkan loader) adds none
-/// and says so through `on_message`.
+/// Every device present that qualifies, "cpu" and "cpu-exact" first. A backend that cannot even be asked (no Vulkan
+/// loader) adds none and says so through `on_message`.
 std::vector<rhi::DeviceInfo> enumerate_devices(const rhi::MessageCallback& on_message = {});
 
 /// Throws Error(no_such_device) with a sentence that names the devices there are.

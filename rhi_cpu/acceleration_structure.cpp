@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstring>
+#include <mutex>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -21,7 +23,7 @@ std::span<const std::byte> memory(const rhi::BufferRange& range) {
   return {buffer.data() + range.offset, static_cast<std::size_t>(range.resolved_size())};
 }
 
-TriangleInput input_of(const rhi::TriangleGeometry& triangles) {
+GeometryInput input_of(const rhi::TriangleGeometry& triangles) {
   TriangleInput input{.vertices = memory(triangles.vertices),
                       .vertex_count = triangles.vertex_count,
                       .vertex_stride = triangles.vertex_stride,
@@ -36,16 +38,58 @@ TriangleInput input_of(const rhi::TriangleGeometry& triangles) {
   return input;
 }
 
+GeometryInput input_of(const rhi::AabbGeometry& boxes) {
+  return BoxInput{
+      .boxes = memory(boxes.boxes), .box_count = boxes.box_count, .stride = boxes.stride, .flags = boxes.flags};
+}
+
+std::vector<GeometryInput> inputs_of(const rhi::BottomLevelDesc& desc) {
+  std::vector<GeometryInput> inputs;
+  for (const rhi::Geometry& geometry : desc.geometries)
+    inputs.push_back(std::visit([](const auto& each) { return GeometryInput(input_of(each)); }, geometry));
+  return inputs;
+}
+
 /// Without the buffers that only a build reads.
 rhi::BottomLevelDesc shape_of(rhi::BottomLevelDesc desc) {
   for (rhi::Geometry& geometry : desc.geometries) {
-    if (auto* triangles = std::get_if<rhi::TriangleGeometry>(&geometry)) triangles->vertices = triangles->indices = {};
+    if (auto* triangles = std::get_if<rhi::TriangleGeometry>(&geometry))
+      triangles->vertices = triangles->indices = {};
+    else
+      std::get<rhi::AabbGeometry>(geometry).boxes = {};
   }
   return desc;
 }
 
 void check_owner(const rhi::BufferRange& range, const DeviceState& device) {
   if (!range.empty()) own<Buffer>(range.buffer, device, range.buffer->desc().label);
+}
+
+void check_owner(const rhi::TriangleGeometry& triangles, const DeviceState& device) {
+  check_owner(triangles.vertices, device);
+  check_owner(triangles.indices, device);
+  check_owner(triangles.transform, device);
+}
+
+void check_owner(const rhi::AabbGeometry& boxes, const DeviceState& device) { check_owner(boxes.boxes, device); }
+
+template <typename Built>
+void require_built(const Built& built, const std::string& label, const char* what) {
+  if (built == nullptr)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label, fmt::format("it is {} before it is built", what));
+}
+
+template <typename Desc>
+Desc relabelled(Desc desc, std::string label) {
+  desc.label = std::move(label);
+  return desc;
+}
+
+template <typename Built>
+rhi::AccelerationStructureSizes sizes_of(const Built& built, DeviceState& device) {
+  // Scratch memory is the tracers' own business.
+  const std::lock_guard lock(device.submission);
+  return {.structure = built != nullptr ? bytes_of(*built) : 0};
 }
 
 }  // namespace
@@ -58,11 +102,32 @@ BottomLevelStructure::BottomLevelStructure(DeviceStateHandle device, const rhi::
 
 BottomLevelStructure::~BottomLevelStructure() { device_->bottom_levels.remove(address_); }
 
+rhi::AccelerationStructureSizes BottomLevelStructure::sizes() const { return sizes_of(built_, *device_); }
+
 void BottomLevelStructure::build(const rhi::BottomLevelDesc& desc) {
-  std::vector<GeometryInput> inputs;
-  for (const rhi::Geometry& geometry : desc.geometries)
-    inputs.push_back(input_of(std::get<rhi::TriangleGeometry>(geometry)));
-  device_->bottom_levels.set_built(address_, BottomLevel::build(device_->embree, inputs, desc.flags, label()));
+  set_built(
+      std::make_shared<BuiltBottomLevel>(device_->tracer.build_bottom_level(inputs_of(desc), desc.flags, label())));
+}
+
+void BottomLevelStructure::update(const rhi::BottomLevelDesc& desc) {
+  require_built(built_, label(), "updated");
+  // What a compacted copy shares must not change with this one.
+  if (built_.use_count() > 1)
+    build(desc);
+  else
+    device_->tracer.update_bottom_level(*built_, inputs_of(desc), label());
+}
+
+std::shared_ptr<BottomLevelStructure> BottomLevelStructure::compacted(std::string label) const {
+  require_built(built_, AccelerationStructure::label(), "compacted");
+  auto copy = std::make_shared<BottomLevelStructure>(device_, relabelled(created_from_, std::move(label)));
+  copy->set_built(built_);
+  return copy;
+}
+
+void BottomLevelStructure::set_built(std::shared_ptr<BuiltBottomLevel> built) {
+  built_ = std::move(built);
+  device_->bottom_levels.set_built(address_, built_);
 }
 
 TopLevelStructure::TopLevelStructure(DeviceStateHandle device, const rhi::TopLevelDesc& desc)
@@ -72,11 +137,13 @@ TopLevelStructure::TopLevelStructure(DeviceStateHandle device, const rhi::TopLev
 
 std::uint64_t TopLevelStructure::device_address() const { return reinterpret_cast<std::uintptr_t>(this); }
 
+rhi::AccelerationStructureSizes TopLevelStructure::sizes() const { return sizes_of(built_, *device_); }
+
 void TopLevelStructure::build(const rhi::TopLevelDesc& desc) {
   const std::span<const std::byte> bytes = memory(desc.instances);
   const std::span instances(reinterpret_cast<const rhi::InstanceDesc*>(bytes.data()), desc.instance_count);
 
-  std::unordered_map<std::uint64_t, std::shared_ptr<const BottomLevel>> named;
+  std::unordered_map<std::uint64_t, std::shared_ptr<const BuiltBottomLevel>> named;
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const std::uint64_t address = instances[i].blas_address;
     if (address == 0 || named.contains(address)) continue;
@@ -89,17 +156,25 @@ void TopLevelStructure::build(const rhi::TopLevelDesc& desc) {
     named.emplace(address, found.built);
   }
   const auto lookup = [&named](std::uint64_t address) { return named.at(address).get(); };
-  built_ = TopLevel::build(device_->embree, instances, lookup, desc.flags, label());
+  built_ =
+      std::make_shared<const BuiltTopLevel>(device_->tracer.build_top_level(instances, lookup, desc.flags, label()));
+}
+
+void TopLevelStructure::update(const rhi::TopLevelDesc& desc) {
+  require_built(built_, label(), "updated");
+  build(desc);
+}
+
+std::shared_ptr<TopLevelStructure> TopLevelStructure::compacted(std::string label) const {
+  require_built(built_, AccelerationStructure::label(), "compacted");
+  auto copy = std::make_shared<TopLevelStructure>(device_, relabelled(created_from_, std::move(label)));
+  copy->built_ = built_;
+  return copy;
 }
 
 void check_owner(const rhi::BottomLevelDesc& desc, const DeviceState& device) {
-  for (const rhi::Geometry& geometry : desc.geometries) {
-    const auto* triangles = std::get_if<rhi::TriangleGeometry>(&geometry);
-    if (triangles == nullptr) continue;
-    check_owner(triangles->vertices, device);
-    check_owner(triangles->indices, device);
-    check_owner(triangles->transform, device);
-  }
+  for (const rhi::Geometry& geometry : desc.geometries)
+    std::visit([&device](const auto& each) { check_owner(each, device); }, geometry);
 }
 
 void check_owner(const rhi::TopLevelDesc& desc, const DeviceState& device) { check_owner(desc.instances, device); }

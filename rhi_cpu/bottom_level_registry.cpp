@@ -6,12 +6,11 @@ std::uint64_t BottomLevelRegistry::add() {
   const std::lock_guard lock(mutex_);
   const std::uint64_t address = next_address_;
   next_address_ += spacing;
-  bottom_levels_.emplace(address, nullptr);
+  bottom_levels_[address];
   return address;
 }
 
-void BottomLevelRegistry::set_built(std::uint64_t address, BottomLevel bottom_level) {
-  auto built = std::make_shared<const BottomLevel>(std::move(bottom_level));
+void BottomLevelRegistry::set_built(std::uint64_t address, std::weak_ptr<const BuiltBottomLevel> built) {
   const std::lock_guard lock(mutex_);
   bottom_levels_.at(address) = std::move(built);
 }
@@ -25,7 +24,7 @@ BottomLevelRegistry::Found BottomLevelRegistry::find(std::uint64_t address) cons
   const std::lock_guard lock(mutex_);
   const auto found = bottom_levels_.find(address);
   if (found == bottom_levels_.end()) return {};
-  return {.lives = true, .built = found->second};
+  return {.lives = true, .built = found->second.lock()};
 }
 
 }  // namespace tandem::cpu

@@ -5,22 +5,22 @@
 #include <memory>
 #include <mutex>
 
-#include "rhi_cpu/trace/acceleration_structure.hpp"
+#include "rhi_cpu/tracer.hpp"
 
 namespace tandem::cpu {
 
 /// The bottom levels that live, by the address that instances name them by. Addresses are never used twice, so an
-/// instance that names a bottom level which is gone is found out. Thread-safe.
+/// instance that names a bottom level which is gone is found out. It keeps none alive. Thread-safe.
 class BottomLevelRegistry {
  public:
   /// A new address, never 0, of a bottom level that is not built yet.
   std::uint64_t add();
-  void set_built(std::uint64_t address, BottomLevel bottom_level);
+  void set_built(std::uint64_t address, std::weak_ptr<const BuiltBottomLevel> built);
   void remove(std::uint64_t address);
 
   struct Found {
     bool lives = false;
-    std::shared_ptr<const BottomLevel> built;  ///< null as long as it is not built
+    std::shared_ptr<const BuiltBottomLevel> built;  ///< null as long as it is not built
   };
   Found find(std::uint64_t address) const;
 
@@ -30,7 +30,7 @@ class BottomLevelRegistry {
 
   mutable std::mutex mutex_;
   std::uint64_t next_address_ = spacing;
-  std::map<std::uint64_t, std::shared_ptr<const BottomLevel>> bottom_levels_;
+  std::map<std::uint64_t, std::weak_ptr<const BuiltBottomLevel>> bottom_levels_;
 };
 
 }  // namespace tandem::cpu

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -29,6 +30,13 @@ std::vector<std::shared_ptr<BindGroup>> own_groups(std::span<const rhi::BindGrou
   std::vector<std::shared_ptr<BindGroup>> result;
   for (const rhi::BindGroupHandle& group : groups) result.push_back(own<BindGroup>(group, device, label));
   return result;
+}
+
+/// What the structure was created from; a desc without anything when it is none of ours, which own() refuses later.
+template <typename Structure>
+auto created_from(const rhi::AccelerationStructureHandle& structure) {
+  const auto created = std::dynamic_pointer_cast<Structure>(structure);
+  return created != nullptr ? created->created_from() : std::remove_cvref_t<decltype(created->created_from())>{};
 }
 
 void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGroup>> groups,
@@ -114,19 +122,32 @@ void CommandList::copy_from_texture(const rhi::TextureHandle& source, const rhi:
 
 void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& structure,
                                      const rhi::BottomLevelDesc& desc) {
-  const auto created = std::dynamic_pointer_cast<BottomLevelStructure>(structure);
   rhi::validation::check(desc, device_->info);
-  rhi::validation::check_build(*this, structure, created ? created->created_from() : rhi::BottomLevelDesc{}, desc);
+  rhi::validation::check_build(*this, structure, created_from<BottomLevelStructure>(structure), desc);
   check_owner(desc, *device_);
   record([built = own<BottomLevelStructure>(structure, *device_, structure->label()), desc] { built->build(desc); });
 }
 
 void CommandList::build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
-  const auto created = std::dynamic_pointer_cast<TopLevelStructure>(structure);
   rhi::validation::check(desc, device_->info);
-  rhi::validation::check_build(*this, structure, created ? created->created_from() : rhi::TopLevelDesc{}, desc);
+  rhi::validation::check_build(*this, structure, created_from<TopLevelStructure>(structure), desc);
   check_owner(desc, *device_);
   record([built = own<TopLevelStructure>(structure, *device_, structure->label()), desc] { built->build(desc); });
+}
+
+void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle& structure,
+                                      const rhi::BottomLevelDesc& desc) {
+  rhi::validation::check(desc, device_->info);
+  rhi::validation::check_update(*this, structure, created_from<BottomLevelStructure>(structure), desc);
+  check_owner(desc, *device_);
+  record([built = own<BottomLevelStructure>(structure, *device_, structure->label()), desc] { built->update(desc); });
+}
+
+void CommandList::update_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
+  rhi::validation::check(desc, device_->info);
+  rhi::validation::check_update(*this, structure, created_from<TopLevelStructure>(structure), desc);
+  check_owner(desc, *device_);
+  record([built = own<TopLevelStructure>(structure, *device_, structure->label()), desc] { built->update(desc); });
 }
 
 void CommandList::dispatch(const rhi::DispatchDesc& desc) {
@@ -168,14 +189,6 @@ void CommandList::execute() {
     throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "the list is submitted a second time");
   const std::vector<std::function<void()>> commands = std::exchange(commands_, {});
   for (const std::function<void()>& command : commands) command();
-}
-
-void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle&, const rhi::BottomLevelDesc&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
-}
-
-void CommandList::update_top_level(const rhi::AccelerationStructureHandle&, const rhi::TopLevelDesc&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "updates are not supported yet");
 }
 
 }  // namespace tandem::cpu

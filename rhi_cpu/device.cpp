@@ -1,5 +1,7 @@
 #include "rhi_cpu/device.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <new>
 
@@ -25,6 +27,9 @@ namespace {
 
 /// A mistyped number shall not start threads until the machine has no more.
 constexpr std::uint32_t most_threads = 4096;
+
+constexpr std::string_view embree_name = "cpu";
+constexpr std::string_view exact_name = "cpu-exact";
 
 class Device final : public rhi::Device {
  public:
@@ -55,9 +60,11 @@ class Device final : public rhi::Device {
     return std::make_shared<ComputePipeline>(state_, desc);
   }
 
-  rhi::AccelerationStructureHandle create_compacted(const rhi::AccelerationStructureHandle&,
+  rhi::AccelerationStructureHandle create_compacted(const rhi::AccelerationStructureHandle& source,
                                                     std::string label) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, label, "compaction is not supported yet");
+    if (source == nullptr || source->level() == rhi::AccelerationStructure::Level::bottom)
+      return compacted<BottomLevelStructure>(source, std::move(label));
+    return compacted<TopLevelStructure>(source, std::move(label));
   }
 
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
@@ -115,6 +122,16 @@ class Device final : public rhi::Device {
   }
 
  private:
+  template <typename Structure>
+  rhi::AccelerationStructureHandle compacted(const rhi::AccelerationStructureHandle& source, std::string label) {
+    const std::shared_ptr<Structure> own_source =
+        source == nullptr ? nullptr : own<Structure>(source, *state_, source->label());
+    const rhi::BuildFlags flags = source == nullptr ? rhi::BuildFlags::none : own_source->created_from().flags;
+    rhi::validation::check_compaction(source, flags, label);
+    const std::lock_guard lock(state_->submission);
+    return own_source->compacted(std::move(label));
+  }
+
   DeviceStateHandle state_;
 };
 
@@ -146,18 +163,22 @@ rhi::Limits limits() {
 }  // namespace
 
 DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled)
-    : info(device_info()),
+    : info(device_info(desc.name)),
       workers(desc.thread_count),
-      // A thread count given to Embree would bound oneTBB in the whole program, so builds use what the machine has.
-      embree(desc.on_message),
+      tracer(desc.name == exact_name ? Tracer::Kind::exact : Tracer::Kind::embree, desc.on_message),
       kernels(std::move(precompiled), desc.kernel_cache, desc.on_message) {}
 
-rhi::DeviceInfo device_info() {
+std::span<const std::string_view> device_names() {
+  static constexpr std::array names = {embree_name, exact_name};
+  return names;
+}
+
+rhi::DeviceInfo device_info(std::string_view name) {
   const std::string processor = processor_name();
-  return {.name = "cpu",
+  return {.name = std::string(name),
           .backend = "cpu",
           .description = processor.empty() ? "CPU" : processor,
-          .driver = embree_version(),
+          .driver = name == exact_name ? "Tandem's exact tracer" : embree_version(),
           .api = "",
           .kind = rhi::DeviceKind::cpu,
           .capabilities = {.ray_query = true,
@@ -174,6 +195,9 @@ rhi::DeviceInfo device_info() {
 }
 
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled) {
+  const std::span<const std::string_view> names = device_names();
+  if (std::find(names.begin(), names.end(), desc.name) == names.end())
+    throw rhi::Error(rhi::ErrorCode::no_such_device, desc.name, "there is no such CPU device");
   if (desc.thread_count > most_threads)
     throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
                      fmt::format("a device of {} threads; the most is {}", desc.thread_count, most_threads));

@@ -11,7 +11,7 @@
 #include "rhi_cpu/bottom_level_registry.hpp"
 #include "rhi_cpu/kernel_store.hpp"
 #include "rhi_cpu/precompiled_kernel.hpp"
-#include "rhi_cpu/trace/embree_device.hpp"
+#include "rhi_cpu/tracer.hpp"
 #include "rhi_cpu/workers.hpp"
 
 namespace tandem::cpu {
@@ -22,7 +22,7 @@ struct DeviceState {
 
   rhi::DeviceInfo info;
   Workers workers;
-  EmbreeDevice embree;
+  Tracer tracer;
   KernelStore kernels;
   BottomLevelRegistry bottom_levels;
   std::mutex submission;  ///< held while a command list executes

@@ -121,13 +121,19 @@ rhi::BottomLevelDesc triangle_desc(rhi::Device& device) {
 
 }  // namespace
 
-TEST_CASE("The device says what it is") {
-  const rhi::DeviceInfo info = device_info();
-  CHECK(info.name == "cpu");
-  CHECK(info.kind == rhi::DeviceKind::cpu);
-  CHECK(info.driver.starts_with("Embree "));
-  CHECK_FALSE(info.description.empty());
-  CHECK(info.capabilities.ray_query);
+TEST_CASE("The devices say what they are") {
+  for (const std::string_view name : device_names()) {
+    const rhi::DeviceInfo info = device_info(name);
+    CHECK(info.name == name);
+    CHECK(info.backend == "cpu");
+    CHECK(info.kind == rhi::DeviceKind::cpu);
+    CHECK(info.driver.starts_with("Embree ") == (name == "cpu"));
+    CHECK_FALSE(info.description.empty());
+    CHECK(info.capabilities.ray_query);
+    CHECK(info.capabilities.ray_tracing_pipeline);
+    CHECK(create_device({.name = std::string(name)}, {})->info().name == name);
+  }
+  CHECK(error_of([] { create_device({.name = "cpu-slow"}, {}); }).code() == rhi::ErrorCode::no_such_device);
 }
 
 TEST_CASE("Every workgroup runs exactly once, whatever the number of threads and workgroups") {
