@@ -37,6 +37,13 @@ inline constexpr uint candidate_intersection_aabb = 1;
 /// Hits that are asked for at once. More take more memory in every query, fewer more traversals.
 inline constexpr std::uint32_t hits_at_once = 4;
 
+/// Hits that were asked for. Fewer than hits_at_once: there are no more that matter.
+struct HitBatch {
+  Hit hits[hits_at_once];
+  std::uint32_t count;
+  std::uint32_t next;  ///< the one behind the candidate
+};
+
 /// In Hit::instance_index: there is no hit.
 inline constexpr std::uint32_t no_instance = ~std::uint32_t{0};
 inline constexpr Hit no_hit = {.t = 0,
@@ -65,10 +72,7 @@ struct rayQueryEXT {
   /// The committed hit is known to exist, but not yet which it is: most rays that stop at the first hit only ask
   /// whether there is one, which is the cheaper question.
   bool committed_is_unknown = false;
-  bool are_last_hits = false;  ///< there are no more behind `hits`
-  std::uint8_t hit_count = 0;  ///< of `hits`
-  std::uint8_t next_hit = 0;   ///< of `hits`: the one behind the candidate
-  Hit hits[hits_at_once];
+  HitBatch batch;  ///< set once there has been a candidate
 };
 
 #define TANDEM_RAY_QUERY_INLINE [[gnu::always_inline]] inline
@@ -77,8 +81,7 @@ TANDEM_RAY_QUERY_INLINE void rayQueryInitializeEXT(rayQueryEXT& query, accelerat
                                                    uint mask, vec3 origin, float t_min, vec3 direction, float t_max) {
   query.scene = structure.top_level;
   query.committed = query.candidate = no_hit;
-  query.has_committed = query.committed_is_unknown = query.are_last_hits = false;
-  query.hit_count = query.next_hit = 0;
+  query.has_committed = query.committed_is_unknown = false;
   query.ray = {
       {origin.x, origin.y, origin.z}, t_min, {direction.x, direction.y, direction.z}, t_max, flags, mask & 0xFF};
   query.committed.t = t_max;
@@ -111,18 +114,19 @@ TANDEM_RAY_QUERY_INLINE void commit_closest(rayQueryEXT& query, const Ray& ray) 
   }
 }
 
-/// Asks for the hits behind the last one, which was the candidate if there was one.
-TANDEM_RAY_QUERY_INLINE void fetch_hits(rayQueryEXT& query, const Ray& ray) {
-  const Hit previous = query.candidate;
-  Hit hits[hits_at_once];
-  const std::uint32_t count = query.scene->functions->next_hits(
-      *query.scene, ray, previous.instance_index == no_instance ? nullptr : &previous, hits, hits_at_once);
-  for (std::uint32_t i = 0; i < hits_at_once; ++i) {
-    if (i < count) query.hits[i] = hits[i];
+/// The next hit in order. False when there are no more, or none that could still be committed.
+/// @param is_first nothing is in `batch` yet
+[[gnu::noinline, gnu::cold]] inline bool take_hit(const TopLevel& scene, const Ray& ray, bool is_first, HitBatch& batch,
+                                                  Hit& hit) {
+  if (is_first || batch.next == batch.count) {
+    if (!is_first && batch.count < hits_at_once) return false;
+    const Hit previous = is_first ? no_hit : batch.hits[hits_at_once - 1];
+    batch.count = scene.functions->next_hits(scene, ray, is_first ? nullptr : &previous, batch.hits, hits_at_once);
+    batch.next = 0;
+    if (batch.count == 0) return false;
   }
-  query.hit_count = static_cast<std::uint8_t>(count);
-  query.next_hit = 0;
-  query.are_last_hits = count < hits_at_once;
+  hit = batch.hits[batch.next++];
+  return true;
 }
 
 TANDEM_RAY_QUERY_INLINE bool rayQueryProceedEXT(rayQueryEXT& query) {
@@ -131,19 +135,18 @@ TANDEM_RAY_QUERY_INLINE bool rayQueryProceedEXT(rayQueryEXT& query) {
   if (state == RayQueryState::complete || state == RayQueryState::at_last_candidate) return false;
 
   const Ray ray = vector_copy(query.ray);
-  if (state == RayQueryState::initialized && !can_meet_candidates(*query.scene, ray.flags)) {
+  if (state == RayQueryState::initialized && !can_meet_candidates(*query.scene, ray.flags)) [[likely]] {
     commit_closest(query, ray);
     return false;
   }
 
-  if (query.next_hit == query.hit_count && !query.are_last_hits) fetch_hits(query, ray);
-  if (query.next_hit == query.hit_count) return false;
-  // No element has a variable index, so that the compiler can keep them apart.
-  Hit hit = no_hit;
-  for (std::uint32_t i = 0; i < hits_at_once; ++i) {
-    if (i == query.next_hit) hit = query.hits[i];
-  }
-  ++query.next_hit;
+  // Copied as a whole and not touched here, the batch stays in memory, where it costs nothing as long as no candidate
+  // is met.
+  HitBatch batch;
+  if (state != RayQueryState::initialized) batch = query.batch;
+  Hit hit;
+  if (!take_hit(*query.scene, ray, state == RayQueryState::initialized, batch, hit)) return false;
+  query.batch = batch;
   if (query.has_committed && !(hit.t < query.committed.t)) return false;
   if (hit.opaque && !hit.is_box) {
     query.committed = hit;
