@@ -47,8 +47,11 @@ bool opaque_of(const rhi::InstanceDesc& instance, const SoupGeometry& geometry, 
 }
 
 bool culled(const rhi::InstanceDesc& instance, std::uint32_t ray_flags, const ExactHit& hit) {
+  if (hit.is_box && (ray_flags & kernel::ray_flag_skip_aabbs)) return true;
+  if (!hit.is_box && (ray_flags & kernel::ray_flag_skip_triangles)) return true;
   if (hit.opaque && (ray_flags & kernel::ray_flag_cull_opaque)) return true;
   if (!hit.opaque && (ray_flags & kernel::ray_flag_cull_no_opaque)) return true;
+  if (hit.is_box) return false;
   if (has_flag(instance, rhi::InstanceFlags::triangle_facing_cull_disable)) return false;
   if (hit.front_face && (ray_flags & kernel::ray_flag_cull_front_facing_triangles)) return true;
   return !hit.front_face && (ray_flags & kernel::ray_flag_cull_back_facing_triangles);
@@ -99,6 +102,30 @@ bool intersect(const dvec3& origin, const dvec3& direction, const kernel::Ray& r
   return true;
 }
 
+/// The same of a box.
+bool intersect(const dvec3& origin, const dvec3& direction, const kernel::Ray& ray, const BoxCorners& box,
+               double coordinate_size, ExactHit& hit, bool& found) {
+  hit.t = double{ray.t_min};
+  hit.t_exit = double{ray.t_max};
+  hit.t_tolerance = 0;
+  hit.is_box = true;
+  const double position_tolerance = 256 * 0x1p-24 * coordinate_size;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    const double a = (double{box[i]} - origin[axis]) / direction[axis];
+    const double b = (double{box[i + 3]} - origin[axis]) / direction[axis];
+    if (std::min(a, b) > hit.t) {
+      hit.t = std::min(a, b);
+      hit.t_tolerance = position_tolerance / std::abs(direction[axis]) + 256 * 0x1p-24 * hit.t;
+    }
+    hit.t_exit = std::min(hit.t_exit, std::max(a, b));
+  }
+  const double length = hit.t_exit - hit.t;
+  const double margin = end_margin * (hit.t + coordinate_size / glm::length(direction));
+  found = length > margin;
+  return std::abs(length) > margin;
+}
+
 double size_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 float uniform(std::mt19937& random, float low, float high) {
@@ -133,23 +160,31 @@ rhi::InstanceDesc instance_of(std::size_t index) {
   return instance;
 }
 
-BuiltSoup build(const cpu::EmbreeDevice& device, const Soup& soup) {
-  std::vector<cpu::BottomLevel> bottom_levels;
-  for (const std::vector<SoupGeometry>& geometries : soup.bottom_levels) {
-    std::vector<cpu::GeometryInput> inputs;
-    for (const SoupGeometry& geometry : geometries) {
-      const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
-      inputs.push_back(
-          cpu::TriangleInput{.vertices = std::as_bytes(std::span(geometry.triangles)),
-                             .vertex_count = 3 * count,
-                             .triangle_count = count,
-                             .flags = geometry.opaque ? rhi::GeometryFlags::opaque : rhi::GeometryFlags::none});
+std::vector<cpu::GeometryInput> inputs_of(const std::vector<SoupGeometry>& geometries) {
+  std::vector<cpu::GeometryInput> inputs;
+  for (const SoupGeometry& geometry : geometries) {
+    const auto flags = geometry.opaque ? rhi::GeometryFlags::opaque : rhi::GeometryFlags::none;
+    if (!geometry.boxes.empty()) {
+      inputs.push_back(cpu::BoxInput{.boxes = std::as_bytes(std::span(geometry.boxes)),
+                                     .box_count = static_cast<std::uint32_t>(geometry.boxes.size()),
+                                     .flags = flags});
+      continue;
     }
-    bottom_levels.push_back(cpu::BottomLevel::build(device, inputs, rhi::BuildFlags::none, "soup"));
+    const auto count = static_cast<std::uint32_t>(geometry.triangles.size());
+    inputs.push_back(cpu::TriangleInput{.vertices = std::as_bytes(std::span(geometry.triangles)),
+                                        .vertex_count = 3 * count,
+                                        .triangle_count = count,
+                                        .flags = flags});
   }
+  return inputs;
+}
+
+BuiltSoup build(const cpu::EmbreeDevice& device, const Soup& soup, rhi::BuildFlags flags) {
+  std::vector<cpu::BottomLevel> bottom_levels;
+  for (const std::vector<SoupGeometry>& geometries : soup.bottom_levels)
+    bottom_levels.push_back(cpu::BottomLevel::build(device, inputs_of(geometries), flags, "soup"));
   cpu::TopLevel top_level = cpu::TopLevel::build(
-      device, soup.instances, [&](std::uint64_t address) { return &bottom_levels.at(address - 1); },
-      rhi::BuildFlags::none, "soup");
+      device, soup.instances, [&](std::uint64_t address) { return &bottom_levels.at(address - 1); }, flags, "soup");
   return {std::move(bottom_levels), std::move(top_level)};
 }
 
@@ -157,7 +192,6 @@ ExactHits all_hits(const Soup& soup, const kernel::Ray& ray) {
   ExactHits result;
   const dvec3 world_origin(ray.origin[0], ray.origin[1], ray.origin[2]);
   const dvec3 world_direction(ray.direction[0], ray.direction[1], ray.direction[2]);
-  if (ray.flags & kernel::ray_flag_skip_triangles) return result;
   for (std::uint32_t i = 0; i < soup.instances.size(); ++i) {
     const rhi::InstanceDesc& instance = soup.instances[i];
     if ((instance.mask & ray.mask) == 0 || instance.blas_address == 0) continue;
@@ -170,19 +204,23 @@ ExactHits all_hits(const Soup& soup, const kernel::Ray& ray) {
     const double coordinate_size =
         1 + size_of(transform.to_object * world_origin) + size_of(transform.to_object * transform.origin);
     for (std::uint32_t g = 0; g < geometries.size(); ++g) {
-      const std::vector<Triangle>& triangles = geometries[g].triangles;
-      for (std::uint32_t p = 0; p < triangles.size(); ++p) {
-        ExactHit hit{};
-        bool found;
-        if (!intersect(origin, direction, ray, triangles[p], coordinate_size, hit, found)) result.ambiguous = true;
-        if (!found) continue;
-        hit.instance_index = i;
-        hit.geometry_index = g;
-        hit.primitive_index = p;
-        hit.opaque = opaque_of(instance, geometries[g], ray.flags);
-        hit.front_face = hit.front_face != has_flag(instance, rhi::InstanceFlags::triangle_flip_facing);
-        if (!culled(instance, ray.flags, hit)) result.hits.push_back(hit);
-      }
+      const auto meet_all = [&](const auto& primitives) {
+        for (std::uint32_t p = 0; p < primitives.size(); ++p) {
+          ExactHit hit{};
+          bool found;
+          if (!intersect(origin, direction, ray, primitives[p], coordinate_size, hit, found)) result.ambiguous = true;
+          if (!found) continue;
+          hit.instance_index = i;
+          hit.geometry_index = g;
+          hit.primitive_index = p;
+          hit.opaque = opaque_of(instance, geometries[g], ray.flags);
+          hit.front_face =
+              !hit.is_box && hit.front_face != has_flag(instance, rhi::InstanceFlags::triangle_flip_facing);
+          if (!culled(instance, ray.flags, hit)) result.hits.push_back(hit);
+        }
+      };
+      meet_all(geometries[g].triangles);
+      meet_all(geometries[g].boxes);
     }
   }
   std::sort(result.hits.begin(), result.hits.end(), [](const ExactHit& a, const ExactHit& b) { return a.t < b.t; });
@@ -206,10 +244,24 @@ Soup random_soup(std::mt19937& random, std::size_t geometry_count, std::size_t t
       }
     }
   }
-  const std::uint32_t instance_flags[] = {0, 1, 2, 3, 4, 8, 2 | 4, 1 | 2 | 8};
-  const std::uint32_t masks[] = {0xFF, 0x01, 0x80, 0xF0, 0x0F, 0xFF, 0x11, 0x00};
+  std::vector<SoupGeometry>& of_boxes = soup.bottom_levels.emplace_back();
+  for (std::size_t g = 0; g < geometry_count; ++g) {
+    SoupGeometry& geometry = of_boxes.emplace_back();
+    geometry.opaque = g % 2 == 0;
+    for (std::size_t i = 0; i < triangle_count / 12 + 1; ++i) {
+      const glm::vec3 center = uniform_vector(random, 0.6f);
+      BoxCorners& box = geometry.boxes.emplace_back();
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto position = static_cast<std::size_t>(axis);
+        box[position] = center[axis] - uniform(random, 0.02f, 0.3f);
+        box[position + 3] = center[axis] + uniform(random, 0.02f, 0.3f);
+      }
+    }
+  }
+  const std::uint32_t instance_flags[] = {0, 1, 2, 3, 4, 8, 2 | 4, 1 | 2 | 8, 0, 1, 4, 8};
+  const std::uint32_t masks[] = {0xFF, 0x01, 0x80, 0xF0, 0x0F, 0xFF, 0x11, 0x00, 0xFF, 0x80, 0x0F, 0x18};
   for (std::size_t i = 0; i < std::size(instance_flags); ++i) {
-    rhi::InstanceDesc& instance = soup.instances.emplace_back(instance_of(i % 2));
+    rhi::InstanceDesc& instance = soup.instances.emplace_back(instance_of(i < 8 ? i % 2 : 2));
     const glm::vec3 translation = uniform_vector(random, 1.5f);
     glm::vec3 scale;
     for (int axis = 0; axis < 3; ++axis) {
