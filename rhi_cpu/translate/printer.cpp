@@ -86,12 +86,12 @@ void Printer::set_up_names() {
   for (const std::uint32_t id : constants) {
     auto& constant = get<SPIRConstant>(id);
     const Type& type = get<Type>(constant.constant_type);
-    if (type.pointer) continue;
+    if (type.pointer && type.storage != spv::StorageClassPhysicalStorageBuffer) continue;
     auto& decoration = ir.meta[id].decoration;
     decoration.builtin = false;
     decoration.decoration_flags.clear(spv::DecorationBuiltIn);
     constant.is_used_as_lut = true;
-    if (is_array(type) || type.basetype == Type::Struct) {
+    if (is_array(type) || (type.basetype == Type::Struct && !is_pointer(type))) {
       decoration.alias = fmt::format("constant_{}", id);
       composite_constants_.insert(id);
     } else {
@@ -337,7 +337,7 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
     if (auto* variable = maybe_get<SPIRVariable>(parameter.id)) variable->parameter = &parameter;
     const Type& type = get<Type>(parameter.type);
     if (!parameters.empty()) parameters += ", ";
-    if (!type.pointer) {
+    if (!is_pointer(type)) {
       parameters += type_name(parameter.type) + " " + to_name(parameter.id);
     } else if (is_buffer(type.storage)) {
       if (get<Type>(pointee(parameter.type)).columns > 1) fail("a pointer to a matrix in a buffer as parameter");
@@ -360,7 +360,8 @@ std::string Printer::variable_decl(const Type& type, const std::string& name, st
 
 std::string Printer::variable_decl(const SPIRVariable& variable) {
   std::uint32_t type = variable.basetype;
-  if (get<Type>(type).pointer) type = pointee(type);
+  // A variable that SPIRV-Cross made for an OpPhi has the type of its value, which may be a buffer reference.
+  if (is_pointer(get<Type>(type)) && get<Type>(type).storage == variable.storage) type = pointee(type);
   std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
   if (const auto initializer = initializers_.find(variable.self); initializer != initializers_.end())
     initial = " = " + value(initializer->second);

@@ -22,10 +22,10 @@ namespace tandem::cpu {
 /// temporaries; this class prints every declaration, instruction and constant itself. Nothing is forwarded: each result
 /// is a temporary, so that no load moves across a store, and the C++ compiler puts it into a register.
 ///
-/// Values have value types (GLM vectors and matrices, Array, plain structs without padding). Buffers are bytes: a
-/// pointer into one is an address expression, and the Offset, ArrayStride, MatrixStride and RowMajor decorations on the
-/// way to it go into the text of the load or store. Functions and Private variables are members of a struct Invocation
-/// that lives on the stack for one invocation.
+/// Values have value types (GLM vectors and matrices, Array, plain structs). Buffers are bytes: a
+/// pointer into one, or a buffer reference, is an address expression, and the Offset, ArrayStride, MatrixStride and
+/// RowMajor decorations on the way to it go into the text of the load or store. Functions and Private variables are
+/// members of a struct Invocation that lives on the stack for one invocation.
 class Printer : public spirv_cross::CompilerGLSL {
  public:
   /// @param spirv a module from prepare()
@@ -85,7 +85,12 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string struct_name(const Type& type);
   std::vector<std::string> member_names(const Type& type) const;
   std::uint32_t array_length(const Type& type) const;
-  bool is_array(const Type& type) const { return !type.array.empty(); }
+  /// An array or a pointer to one has the array's lengths; an array of pointers and a pointer are both marked as
+  /// pointers, but only a pointer is one level deeper than what it is made of.
+  bool is_pointer(const Type& type) const {
+    return type.pointer && type.pointer_depth > get<Type>(type.parent_type).pointer_depth;
+  }
+  bool is_array(const Type& type) const { return !type.array.empty() && !is_pointer(type); }
   bool is_runtime_array(const Type& type) const { return is_array(type) && array_length(type) == 0; }
   bool is_opaque(const Type& type) const;
   std::string constant_text(const spirv_cross::SPIRConstant& constant);

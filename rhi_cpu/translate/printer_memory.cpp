@@ -17,10 +17,11 @@ std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
 
 bool Printer::is_buffer(spv::StorageClass storage) const {
   return storage == spv::StorageClassUniform || storage == spv::StorageClassStorageBuffer ||
-         storage == spv::StorageClassPushConstant || storage == spv::StorageClassShaderRecordBufferKHR;
+         storage == spv::StorageClassPushConstant || storage == spv::StorageClassShaderRecordBufferKHR ||
+         storage == spv::StorageClassPhysicalStorageBuffer;
 }
 
-bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && type_of(id).pointer; }
+bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && is_pointer(type_of(id)); }
 
 std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const {
   if (!has_member_decoration(struct_type_id, member, spv::DecorationMatrixStride)) return 0;
@@ -31,6 +32,8 @@ std::uint32_t Printer::pointee(std::uint32_t pointer_type_id) const { return get
 
 Printer::Address Printer::address_of(std::uint32_t pointer_id) {
   if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) return known->second;
+  if (type_of(pointer_id).storage == spv::StorageClassPhysicalStorageBuffer)
+    return {.bytes = value(pointer_id), .resource = ""};
   const auto* variable = maybe_get<SPIRVariable>(pointer_id);
   if (variable == nullptr) fail("a pointer into a buffer that comes from neither a variable nor an access chain");
   if (variable->storage == spv::StorageClassPushConstant) return {.bytes = "push_constants", .resource = ""};
@@ -113,6 +116,7 @@ void Printer::chain_in_variable(Operands ops, std::uint32_t length) {
 std::string Printer::load_text(std::uint32_t type_id, const Address& address) {
   const Type& type = get<Type>(type_id);
   const std::string name = type_name(type);
+  if (type.columns > 1 && address.matrix_stride == 0) fail("a matrix behind a pointer that does not say its stride");
   if (is_array(type)) {
     const Address element = {
         .bytes = "element", .resource = "", .matrix_stride = address.matrix_stride, .row_major = address.row_major};
@@ -120,6 +124,7 @@ std::string Printer::load_text(std::uint32_t type_id, const Address& address) {
                        get_decoration(type_id, spv::DecorationArrayStride), printed(address),
                        load_text(type.parent_type, element));
   }
+  if (is_pointer(type)) return fmt::format("k::load<{}>({})", name, printed(address));
   if (type.basetype == SPIRType::Struct) return fmt::format("load_{}({})", std::uint32_t(type.self), printed(address));
   if (type.columns > 1)
     return fmt::format("k::load_matrix<{}, {}, {}>({})", name, address.matrix_stride, address.row_major,
@@ -138,6 +143,7 @@ std::string Printer::store_text(std::uint32_t type_id, const Address& address, c
                        type_name(type), get_decoration(type_id, spv::DecorationArrayStride), printed(address), value,
                        store_text(type.parent_type, element, "item"));
   }
+  if (is_pointer(type)) return fmt::format("k::store<{}>({}, {})", type_name(type), printed(address), value);
   if (type.basetype == SPIRType::Struct)
     return fmt::format("store_{}({}, {})", std::uint32_t(type.self), printed(address), value);
   if (type.columns > 1)
@@ -171,7 +177,8 @@ void Printer::print_struct_memory(std::uint32_t struct_type_id) {
 void Printer::print_struct_memory_functions() {
   // Ids are in order of declaration, and SPIR-V declares a struct after those it contains.
   ir.for_each_typed_id<SPIRType>([&](std::uint32_t id, const Type& type) {
-    if (type.basetype != SPIRType::Struct || type.pointer || is_array(type) || std::uint32_t(type.self) != id) return;
+    if (type.basetype != SPIRType::Struct || is_pointer(type) || is_array(type) || std::uint32_t(type.self) != id)
+      return;
     if (type.member_types.empty()) return;
     for (std::uint32_t i = 0; i < type.member_types.size(); ++i) {
       const Type& member = get<Type>(type.member_types[i]);

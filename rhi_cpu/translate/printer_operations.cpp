@@ -68,10 +68,10 @@ void Printer::print_call(Operands ops, std::uint32_t length) {
   for (std::uint32_t i = 3; i < length; ++i) {
     if (i > 3) arguments += ", ";
     const Type& type = type_of(ops[i]);
-    if (type.pointer && type.storage == spv::StorageClassUniformConstant) {
+    if (is_pointer(type) && type.storage == spv::StorageClassUniformConstant) {
       arguments += descriptor_value(ops[i]);
     } else {
-      arguments += type.pointer && is_buffer(type.storage) ? printed(address_of(ops[i])) : value(ops[i]);
+      arguments += is_buffer_pointer(ops[i]) ? printed(address_of(ops[i])) : value(ops[i]);
     }
   }
   const std::string text = fmt::format("{}({})", to_name(ops[2]), arguments);
@@ -328,7 +328,12 @@ bool Printer::print_conversion(spv::Op op, Operands ops) {
     case spv::OpUConvert:
       return call("convert", to_unsigned(to.basetype), value_unsigned(ops[2]));
     case spv::OpBitcast:
-      if (to.pointer || type_of(ops[2]).pointer) fail("OpBitcast of a pointer");
+    case spv::OpConvertUToPtr:
+    case spv::OpConvertPtrToU:
+      if (is_pointer(to) || is_pointer(type_of(ops[2]))) {
+        define(ops[0], ops[1], fmt::format("k::bit_cast<{}>({})", type_name(to), value(ops[2])));
+        return true;
+      }
       return call("bit_cast", to.basetype, value(ops[2]));
     default:
       return false;

@@ -76,6 +76,7 @@ void Printer::print_call_ending(std::uint32_t function_id) {
 
 std::uint32_t Printer::value_alignment(const Type& type) const {
   if (is_array(type)) return value_alignment(get<Type>(type.parent_type));
+  if (is_pointer(type)) return sizeof(void*);
   if (type.basetype != SPIRType::Struct) return type.basetype == SPIRType::Boolean ? 1 : type.width / 8;
   std::uint32_t alignment = 1;
   for (const auto& member : type.member_types) alignment = std::max(alignment, value_alignment(get<Type>(member)));
@@ -84,6 +85,7 @@ std::uint32_t Printer::value_alignment(const Type& type) const {
 
 std::uint32_t Printer::value_size(const Type& type) const {
   if (is_array(type)) return value_size(get<Type>(type.parent_type)) * array_length(type);
+  if (is_pointer(type)) return sizeof(void*);
   if (type.basetype != SPIRType::Struct) return value_alignment(type) * type.vecsize * type.columns;
   const auto aligned = [](std::uint32_t size, std::uint32_t to) { return (size + to - 1) / to * to; };
   std::uint32_t size = 0;

@@ -62,7 +62,10 @@ std::string Printer::vector_name(BaseType base, std::uint32_t length) const {
 }
 
 std::string Printer::type_name(const Type& type) {
-  if (type.pointer) fail("a pointer as a value");
+  if (is_pointer(type)) {
+    if (type.storage != spv::StorageClassPhysicalStorageBuffer) fail("a pointer as a value");
+    return "std::byte*";
+  }
   if (is_array(type))
     return fmt::format("k::Array<{}, {}>", type_name(get<Type>(type.parent_type)), array_length(type));
   switch (type.basetype) {
@@ -156,6 +159,7 @@ std::string Printer::scalar_text(const SPIRConstant& constant, BaseType base, st
 
 std::string Printer::constant_text(const SPIRConstant& constant) {
   const Type& type = get<Type>(constant.constant_type);
+  if (is_pointer(type)) return "static_cast<std::byte*>(nullptr)";
   if (type.vecsize == 1 && type.columns == 1) return scalar_text(constant, type.basetype, 0, 0);
   std::string elements;
   for (std::uint32_t column = 0; column < type.columns; ++column)
@@ -166,7 +170,7 @@ std::string Printer::constant_text(const SPIRConstant& constant) {
 
 std::string Printer::constant_initializer(const SPIRConstant& constant) {
   const Type& type = get<Type>(constant.constant_type);
-  if (!is_array(type) && type.basetype != SPIRType::Struct) return constant_text(constant);
+  if (is_pointer(type) || (!is_array(type) && type.basetype != SPIRType::Struct)) return constant_text(constant);
   std::string elements;
   for (const auto& id : constant.subconstants)
     elements += (elements.empty() ? "" : ", ") + constant_initializer(get<SPIRConstant>(id));

@@ -36,6 +36,7 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityUniformBufferArrayDynamicIndexing,
                                             spv::CapabilityStorageBufferArrayDynamicIndexing,
                                             spv::CapabilityShaderNonUniform,
+                                            spv::CapabilityPhysicalStorageBufferAddresses,
                                             spv::CapabilityImage1D,
                                             spv::CapabilityImageQuery,
                                             spv::CapabilityStorageImageExtendedFormats,
@@ -79,7 +80,8 @@ constexpr spv::StorageClass storage_classes[] = {spv::StorageClassUniformConstan
                                                  spv::StorageClassIncomingCallableDataKHR,
                                                  spv::StorageClassHitAttributeKHR,
                                                  spv::StorageClassShaderRecordBufferKHR,
-                                                 spv::StorageClassImage};
+                                                 spv::StorageClassImage,
+                                                 spv::StorageClassPhysicalStorageBuffer};
 
 constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,       spv::BuiltInWorkgroupSize,
                                       spv::BuiltInWorkgroupId,         spv::BuiltInLocalInvocationId,
@@ -103,7 +105,8 @@ constexpr spv::Decoration decorations[] = {
     spv::DecorationVolatile,         spv::DecorationCoherent,      spv::DecorationNonWritable,
     spv::DecorationNonReadable,      spv::DecorationBinding,       spv::DecorationDescriptorSet,
     spv::DecorationOffset,           spv::DecorationNoContraction, spv::DecorationNoSignedWrap,
-    spv::DecorationNoUnsignedWrap,   spv::DecorationNonUniform,    spv::DecorationUniform};
+    spv::DecorationNoUnsignedWrap,   spv::DecorationNonUniform,    spv::DecorationAliasedPointer,
+    spv::DecorationRestrictPointer,  spv::DecorationUniform};
 
 constexpr spv::Op instructions[] = {
     spv::OpNop, spv::OpSourceContinued, spv::OpSource, spv::OpSourceExtension, spv::OpName, spv::OpMemberName,
@@ -113,10 +116,11 @@ constexpr spv::Op instructions[] = {
     spv::OpDecorationGroup, spv::OpGroupDecorate, spv::OpGroupMemberDecorate,
     // types and constants
     spv::OpTypeVoid, spv::OpTypeBool, spv::OpTypeInt, spv::OpTypeFloat, spv::OpTypeVector, spv::OpTypeMatrix,
-    spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypePointer, spv::OpTypeFunction,
-    spv::OpTypeImage, spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef, spv::OpConstantTrue,
-    spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull, spv::OpSpecConstantTrue,
-    spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite, spv::OpSpecConstantOp,
+    spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypeForwardPointer, spv::OpTypePointer,
+    spv::OpTypeFunction, spv::OpTypeImage, spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef,
+    spv::OpConstantTrue, spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull,
+    spv::OpSpecConstantTrue, spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite,
+    spv::OpSpecConstantOp,
     // control flow
     spv::OpFunction, spv::OpFunctionParameter, spv::OpFunctionEnd, spv::OpFunctionCall, spv::OpPhi, spv::OpLoopMerge,
     spv::OpSelectionMerge, spv::OpLabel, spv::OpBranch, spv::OpBranchConditional, spv::OpSwitch, spv::OpReturn,
@@ -134,7 +138,7 @@ constexpr spv::Op instructions[] = {
     spv::OpCompositeExtract, spv::OpCompositeInsert, spv::OpCopyObject, spv::OpCopyLogical, spv::OpTranspose,
     // conversions
     spv::OpConvertFToU, spv::OpConvertFToS, spv::OpConvertSToF, spv::OpConvertUToF, spv::OpUConvert, spv::OpSConvert,
-    spv::OpFConvert, spv::OpBitcast,
+    spv::OpFConvert, spv::OpBitcast, spv::OpConvertPtrToU, spv::OpConvertUToPtr,
     // arithmetic
     spv::OpSNegate, spv::OpFNegate, spv::OpIAdd, spv::OpFAdd, spv::OpISub, spv::OpFSub, spv::OpIMul, spv::OpFMul,
     spv::OpUDiv, spv::OpSDiv, spv::OpFDiv, spv::OpUMod, spv::OpSRem, spv::OpSMod, spv::OpFRem, spv::OpFMod,

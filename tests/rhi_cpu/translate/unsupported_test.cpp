@@ -74,10 +74,6 @@ TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
       "void main() { b = gl_SubgroupSize; }",
       "capability GroupNonUniform is not supported");
   check_glsl(
-      "#extension GL_EXT_buffer_reference : require\nlayout(buffer_reference, std430) buffer P { int i; };\n"
-      "layout(push_constant) uniform Push { P p; }; void main() { p.i = 1; }",
-      "capability PhysicalStorageBufferAddresses is not supported");
-  check_glsl(
       "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require\nlayout(binding = 1) buffer B { float b; "
       "};\n"
       "void main() { b = float(float16_t(b) * float16_t(2)); }",
