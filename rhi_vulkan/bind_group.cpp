@@ -6,6 +6,7 @@
 #include "rhi_vulkan/acceleration_structure.hpp"
 #include "rhi_vulkan/buffer.hpp"
 #include "rhi_vulkan/pipeline_layout.hpp"
+#include "rhi_vulkan/texture.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -17,6 +18,7 @@ DescriptorCounts count_descriptors(const rhi::PipelineInterface& interface, std:
     if (binding.kind == rhi::BindingKind::uniform_buffer) counts.uniform_buffers += binding.count;
     if (binding.kind == rhi::BindingKind::storage_buffer) counts.storage_buffers += binding.count;
     if (binding.kind == rhi::BindingKind::acceleration_structure) counts.acceleration_structures += binding.count;
+    if (binding.kind == rhi::BindingKind::storage_image) counts.storage_images += binding.count;
   }
   return counts;
 }
@@ -44,6 +46,7 @@ void BindGroup::write() const {
   const std::vector<rhi::BindGroupEntry>& entries = desc().entries;
   // Filled to their final size first: the writes point into them.
   std::vector<vk::DescriptorBufferInfo> buffers(entries.size());
+  std::vector<vk::DescriptorImageInfo> images(entries.size());
   std::vector<vk::AccelerationStructureKHR> structures(entries.size());
   std::vector<vk::WriteDescriptorSetAccelerationStructureKHR> structure_writes(entries.size());
   std::vector<vk::WriteDescriptorSet> writes;
@@ -60,6 +63,10 @@ void BindGroup::write() const {
                                             .offset = range->offset,
                                             .range = range->resolved_size()};
       write.pBufferInfo = &buffers[i];
+    } else if (const auto* texture = std::get_if<rhi::TextureHandle>(&entry.resource)) {
+      images[i] = vk::DescriptorImageInfo{.imageView = own<Texture>(*texture, context_, label(), "texture").view(),
+                                          .imageLayout = vk::ImageLayout::eGeneral};
+      write.pImageInfo = &images[i];
     } else {
       const auto& structure = std::get<rhi::AccelerationStructureHandle>(entry.resource);
       if (structure != nullptr)

@@ -29,33 +29,33 @@ std::uint64_t padded_size(const rhi::BufferDesc& desc) {
   return is_input ? std::max(desc.size, desc.size + fourth_component) : desc.size;
 }
 
-MemoryAllocation allocate(Context& context, const vk::MemoryRequirements& requirements, MemoryKind kind) {
+}  // namespace
+
+MemoryAllocation allocate(Context& context, const vk::MemoryRequirements& requirements, MemoryKind kind,
+                          const std::string& label) {
   try {
     return context.memory.allocate(requirements, kind);
   } catch (const rhi::Error& error) {
-    if (error.code() != rhi::ErrorCode::out_of_memory) throw;
+    if (error.code() != rhi::ErrorCode::out_of_memory) throw rhi::Error(error.code(), label, error.what());
   }
   context.queue.release_finished();
-  return context.memory.allocate(requirements, kind);
+  try {
+    return context.memory.allocate(requirements, kind);
+  } catch (const rhi::Error& error) {
+    throw rhi::Error(error.code(), label, error.what());
+  }
 }
-
-}  // namespace
 
 BackedBuffer make_backed_buffer(Context& context, std::uint64_t size, vk::BufferUsageFlags usage, MemoryKind kind,
                                 const std::string& label) {
-  try {
-    return translating_errors(label, "create a buffer of " + std::to_string(size) + " bytes", [&] {
-      BackedBuffer buffer;
-      buffer.handle = context.device.createBuffer({.size = size, .usage = usage});
-      context.name(buffer.handle, label);
-      buffer.memory = allocate(context, buffer.handle.getMemoryRequirements(), kind);
-      buffer.handle.bindMemory(buffer.memory.memory(), buffer.memory.offset());
-      return buffer;
-    });
-  } catch (const rhi::Error& error) {
-    if (!error.label().empty() || label.empty()) throw;
-    throw rhi::Error(error.code(), label, error.what());
-  }
+  return translating_errors(label, "create a buffer of " + std::to_string(size) + " bytes", [&] {
+    BackedBuffer buffer;
+    buffer.handle = context.device.createBuffer({.size = size, .usage = usage});
+    context.name(buffer.handle, label);
+    buffer.memory = allocate(context, buffer.handle.getMemoryRequirements(), kind, label);
+    buffer.handle.bindMemory(buffer.memory.memory(), buffer.memory.offset());
+    return buffer;
+  });
 }
 
 std::uint64_t device_address(const Context& context, const BackedBuffer& buffer) {

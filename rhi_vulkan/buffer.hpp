@@ -5,13 +5,18 @@
 
 namespace tandem::vulkan {
 
+/// Memory for a buffer or an image. Throws rhi::Error(out_of_memory) naming `label`, after having let go of what
+/// finished submissions held.
+MemoryAllocation allocate(Context& context, const vk::MemoryRequirements& requirements, MemoryKind kind,
+                          const std::string& label);
+
 /// A VkBuffer and the memory under it.
 struct BackedBuffer {
   MemoryAllocation memory;
   vk::raii::Buffer handle = nullptr;  // destroyed before its memory
 };
 
-/// Throws rhi::Error(out_of_memory), after having let go of what finished submissions held.
+/// Throws as `allocate`.
 BackedBuffer make_backed_buffer(Context& context, std::uint64_t size, vk::BufferUsageFlags usage, MemoryKind kind,
                                 const std::string& label);
 

@@ -90,6 +90,38 @@ void CommandList::fill(const rhi::BufferRange& range, std::uint32_t value) {
   recording.commands.handle.fillBuffer(target.handle(), range.offset, range.resolved_size(), value);
 }
 
+void CommandList::copy_to_texture(const rhi::BufferRange& source, const rhi::TextureHandle& destination) {
+  constexpr vk::ImageLayout layout = vk::ImageLayout::eTransferDstOptimal;
+  copy_texture(source, destination, layout, [&](const Buffer& buffer, const Texture& texture) {
+    recording_->commands.handle.copyBufferToImage(buffer.handle(), texture.handle(), layout,
+                                                  texture.whole(source.offset));
+  });
+}
+
+void CommandList::copy_from_texture(const rhi::TextureHandle& source, const rhi::BufferRange& destination) {
+  constexpr vk::ImageLayout layout = vk::ImageLayout::eTransferSrcOptimal;
+  copy_texture(destination, source, layout, [&](const Buffer& buffer, const Texture& texture) {
+    recording_->commands.handle.copyImageToBuffer(texture.handle(), layout, buffer.handle(),
+                                                  texture.whole(destination.offset));
+  });
+}
+
+template <typename Copy>
+void CommandList::copy_texture(const rhi::BufferRange& range, const rhi::TextureHandle& handle, vk::ImageLayout layout,
+                               Copy&& copy) {
+  Recording& recording = this->recording();
+  rhi::validation::check_texture_copy(*this, range, handle);
+  const Buffer& buffer = own<Buffer>(range.buffer, context_, label(), "buffer of a texture's copy");
+  const Texture& texture = own<Texture>(handle, context_, label(), "texture of a copy");
+  recording.resources.push_back(range.buffer);
+  recording.resources.push_back(handle);
+  // Changing the layout orders the copy behind everything before and in front of everything after.
+  order(CommandKind::exclusive, {});
+  texture.change_layout(recording.commands.handle, vk::ImageLayout::eGeneral, layout);
+  copy(buffer, texture);
+  texture.change_layout(recording.commands.handle, layout, vk::ImageLayout::eGeneral);
+}
+
 void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& structure,
                                      const rhi::BottomLevelDesc& desc) {
   build(structure, desc, vk::BuildAccelerationStructureModeKHR::eBuild);
@@ -245,14 +277,6 @@ std::uint64_t CommandList::submit() {
     builds_.clear();
     return number;
   });
-}
-
-void CommandList::copy_to_texture(const rhi::BufferRange&, const rhi::TextureHandle&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
-}
-
-void CommandList::copy_from_texture(const rhi::TextureHandle&, const rhi::BufferRange&) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label(), "textures are not supported yet");
 }
 
 }  // namespace tandem::vulkan

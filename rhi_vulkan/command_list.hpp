@@ -11,6 +11,7 @@
 #include "rhi_vulkan/dependency_tracker.hpp"
 #include "rhi_vulkan/pipeline_layout.hpp"
 #include "rhi_vulkan/query_pool.hpp"
+#include "rhi_vulkan/texture.hpp"
 #include "rhi_vulkan/transient_memory.hpp"
 
 namespace tandem::vulkan {
@@ -58,6 +59,9 @@ class CommandList final : public rhi::CommandList {
   Recording& recording();
   /// A barrier where the command that follows needs one.
   void order(CommandKind kind, std::span<const Access> accesses);
+  template <typename Copy>
+  void copy_texture(const rhi::BufferRange& range, const rhi::TextureHandle& handle, vk::ImageLayout layout,
+                    Copy&& copy);
   void bind(vk::PipelineBindPoint point, vk::Pipeline pipeline, const PipelineLayout& layout,
             std::span<const rhi::BindGroupHandle> bind_groups, std::span<const std::byte> push_constants);
   template <typename Desc>

@@ -1,6 +1,7 @@
 #include "rhi_vulkan/context.hpp"
 
 #include <utility>
+#include <vector>
 
 namespace tandem::vulkan {
 namespace {
@@ -29,11 +30,12 @@ vk::raii::Device make_device(const PhysicalDevice& physical) {
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue = {
       .queueFamilyIndex = physical.queue_family, .queueCount = 1, .pQueuePriorities = &priority};
+  const std::vector<const char*> extensions = extensions_of(enabled);
   const vk::DeviceCreateInfo info = {.pNext = &features,
                                      .queueCreateInfoCount = 1,
                                      .pQueueCreateInfos = &queue,
-                                     .enabledExtensionCount = static_cast<std::uint32_t>(physical.extensions.size()),
-                                     .ppEnabledExtensionNames = physical.extensions.data()};
+                                     .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                                     .ppEnabledExtensionNames = extensions.data()};
   return translating_errors(physical.info.name, "create the device",
                             [&] { return physical.handle.createDevice(info); });
 }

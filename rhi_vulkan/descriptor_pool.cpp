@@ -18,18 +18,19 @@ namespace {
 
 constexpr std::uint32_t sets_per_page = 256;
 constexpr DescriptorCounts usual_page = {
-    .uniform_buffers = 256, .storage_buffers = 2048, .acceleration_structures = 256};
+    .uniform_buffers = 256, .storage_buffers = 2048, .acceleration_structures = 256, .storage_images = 256};
 
 bool fits(const DescriptorCounts& wanted, const DescriptorCounts& free) {
   return wanted.uniform_buffers <= free.uniform_buffers && wanted.storage_buffers <= free.storage_buffers &&
-         wanted.acceleration_structures <= free.acceleration_structures;
+         wanted.acceleration_structures <= free.acceleration_structures && wanted.storage_images <= free.storage_images;
 }
 
 vk::raii::DescriptorPool make_pool(const vk::raii::Device& device, const DescriptorCounts& counts) {
-  const std::array<vk::DescriptorPoolSize, 3> sizes = {
+  const std::array<vk::DescriptorPoolSize, 4> sizes = {
       vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, counts.uniform_buffers},
       vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, counts.storage_buffers},
-      vk::DescriptorPoolSize{vk::DescriptorType::eAccelerationStructureKHR, counts.acceleration_structures}};
+      vk::DescriptorPoolSize{vk::DescriptorType::eAccelerationStructureKHR, counts.acceleration_structures},
+      vk::DescriptorPoolSize{vk::DescriptorType::eStorageImage, counts.storage_images}};
   return device.createDescriptorPool({.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                       .maxSets = sets_per_page,
                                       .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
@@ -59,6 +60,7 @@ DescriptorSet::DescriptorSet(DescriptorPool& pool, vk::DescriptorSetLayout layou
   page_->free.uniform_buffers -= counts.uniform_buffers;
   page_->free.storage_buffers -= counts.storage_buffers;
   page_->free.acceleration_structures -= counts.acceleration_structures;
+  page_->free.storage_images -= counts.storage_images;
 }
 
 DescriptorSet::~DescriptorSet() {
@@ -68,6 +70,7 @@ DescriptorSet::~DescriptorSet() {
   page_->free.uniform_buffers += counts_.uniform_buffers;
   page_->free.storage_buffers += counts_.storage_buffers;
   page_->free.acceleration_structures += counts_.acceleration_structures;
+  page_->free.storage_images += counts_.storage_images;
   page_->fragmented = false;
 }
 
@@ -81,7 +84,8 @@ DescriptorSet::Page& DescriptorPool::page_with_room(const DescriptorCounts& coun
   const DescriptorCounts size = {
       .uniform_buffers = std::max(usual_page.uniform_buffers, counts.uniform_buffers),
       .storage_buffers = std::max(usual_page.storage_buffers, counts.storage_buffers),
-      .acceleration_structures = std::max(usual_page.acceleration_structures, counts.acceleration_structures)};
+      .acceleration_structures = std::max(usual_page.acceleration_structures, counts.acceleration_structures),
+      .storage_images = std::max(usual_page.storage_images, counts.storage_images)};
   pages_.push_back({.pool = make_pool(device_, size), .sets = sets_per_page, .free = size});
   return pages_.back();
 }

@@ -14,6 +14,7 @@ struct DescriptorCounts {
   std::uint32_t uniform_buffers = 0;
   std::uint32_t storage_buffers = 0;
   std::uint32_t acceleration_structures = 0;
+  std::uint32_t storage_images = 0;
 };
 
 class DescriptorPool;

@@ -17,10 +17,12 @@
 #include "rhi_vulkan/compute_pipeline.hpp"
 #include "rhi_vulkan/context.hpp"
 #include "rhi_vulkan/fence.hpp"
+#include "rhi_vulkan/make_device.hpp"
 #include "rhi_vulkan/query_pool.hpp"
 #include "rhi_vulkan/ray_tracing_pipeline.hpp"
 #include "rhi_vulkan/shader_module.hpp"
 #include "rhi_vulkan/shader_table.hpp"
+#include "rhi_vulkan/texture.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -67,7 +69,8 @@ class Device final : public rhi::Device {
   }
 
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
-    throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "textures are not supported yet");
+    rhi::validation::check(desc, info());
+    return std::make_shared<Texture>(context_, desc);
   }
 
   rhi::RayTracingPipelineHandle create_ray_tracing_pipeline(const rhi::RayTracingPipelineDesc& desc) override {
@@ -183,12 +186,16 @@ std::vector<rhi::DeviceInfo> enumerate(const rhi::MessageCallback& on_message) {
   return infos;
 }
 
+rhi::DeviceHandle make_device(std::unique_ptr<Instance> instance, PhysicalDevice physical) {
+  return std::make_shared<Device>(std::make_shared<Context>(std::move(instance), std::move(physical)));
+}
+
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   const std::size_t index = device_index(desc.name);
   auto instance = std::make_unique<Instance>(desc.driver_validation, desc.on_message);
   PhysicalDevices devices = find_physical_devices(*instance);
   if (index >= devices.qualifying.size()) throw_no_such_device(desc.name, devices);
-  return std::make_shared<Device>(std::make_shared<Context>(std::move(instance), std::move(devices.qualifying[index])));
+  return make_device(std::move(instance), std::move(devices.qualifying[index]));
 }
 
 }  // namespace tandem::vulkan

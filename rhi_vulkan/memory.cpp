@@ -97,7 +97,7 @@ std::uint32_t MemoryAllocator::memory_type(std::uint32_t allowed_types, MemoryKi
     if ((flags & wish.preferred) == wish.preferred) return i;
     if (!acceptable) acceptable = i;
   }
-  if (!acceptable) throw rhi::Error(rhi::ErrorCode::unsupported, "", "the driver has no memory type for a buffer");
+  if (!acceptable) throw rhi::Error(rhi::ErrorCode::unsupported, "", "the driver has no memory type for it");
   return *acceptable;
 }
 

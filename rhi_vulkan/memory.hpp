@@ -44,8 +44,8 @@ class MemoryAllocation {
   std::uint64_t size_ = 0;
 };
 
-/// Device memory for buffers, in blocks of one memory type each. Large pieces get a block of their own. Thread-safe.
-/// Only buffers live here, so bufferImageGranularity does not matter.
+/// Device memory for buffers and images, in blocks of one memory type each. Large pieces get a block of their own.
+/// Thread-safe. Whoever allocates for an image asks for whole pages of bufferImageGranularity.
 class MemoryAllocator {
  public:
   MemoryAllocator(const vk::raii::Device& device, const vk::PhysicalDeviceMemoryProperties& properties,

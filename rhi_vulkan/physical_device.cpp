@@ -106,15 +106,6 @@ void choose_extensions(const vk::raii::PhysicalDevice& handle, const OfferedExte
   }
 }
 
-std::vector<const char*> extensions_of(const EnabledFeatures& enabled) {
-  std::vector<const char*> extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                                         VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-  if (enabled.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
-  if (enabled.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-  if (enabled.null_descriptor) extensions.push_back(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME);
-  return extensions;
-}
-
 vk::ShaderStageFlags stages_of(const EnabledFeatures& enabled) {
   using Stage = vk::ShaderStageFlagBits;
   vk::ShaderStageFlags stages = Stage::eCompute;
@@ -224,7 +215,6 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   device.features = choose_features(features.get<vk::PhysicalDeviceFeatures2>().features,
                                     features.get<vk::PhysicalDeviceVulkan11Features>(), vulkan12);
   choose_extensions(device.handle, offered, device.features);
-  device.extensions = extensions_of(device.features);
   device.queue_family = *family;
   device.timestamp_valid_bits = families[*family].timestampValidBits;
   device.timestamp_period = core_properties.limits.timestampPeriod;
@@ -249,6 +239,15 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
 }
 
 }  // namespace
+
+std::vector<const char*> extensions_of(const EnabledFeatures& enabled) {
+  std::vector<const char*> extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
+                                         VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
+  if (enabled.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
+  if (enabled.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+  if (enabled.null_descriptor) extensions.push_back(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME);
+  return extensions;
+}
 
 PhysicalDevices find_physical_devices(const Instance& instance) {
   return translating_errors("", "list the Vulkan devices", [&] {

@@ -22,12 +22,14 @@ struct EnabledFeatures {
   bool null_descriptor = false;      ///< VK_EXT_robustness2
 };
 
+/// The device extensions that these features come from.
+std::vector<const char*> extensions_of(const EnabledFeatures& enabled);
+
 /// A physical device that qualifies, and what creating a logical one from it takes.
 struct PhysicalDevice {
   vk::raii::PhysicalDevice handle = nullptr;
   rhi::DeviceInfo info;
   EnabledFeatures features;
-  std::vector<const char*> extensions;
   std::uint32_t queue_family = 0;
   std::uint32_t timestamp_valid_bits = 0;        ///< of the queue family, 0 without timestamps
   double timestamp_period = 1;                   ///< nanoseconds in a tick

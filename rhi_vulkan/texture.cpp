@@ -1,0 +1,162 @@
+#include "rhi_vulkan/texture.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "rhi_vulkan/command_buffer.hpp"
+
+namespace tandem::vulkan {
+namespace {
+
+constexpr vk::ImageUsageFlags usage =
+    vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc | vk::ImageUsageFlagBits::eTransferDst;
+
+vk::Format format_of(rhi::TextureFormat format) {
+  switch (format) {
+    case rhi::TextureFormat::rgba8_unorm:
+      return vk::Format::eR8G8B8A8Unorm;
+    case rhi::TextureFormat::rgba8_snorm:
+      return vk::Format::eR8G8B8A8Snorm;
+    case rhi::TextureFormat::rgba8_uint:
+      return vk::Format::eR8G8B8A8Uint;
+    case rhi::TextureFormat::rgba8_sint:
+      return vk::Format::eR8G8B8A8Sint;
+    case rhi::TextureFormat::rgba16_uint:
+      return vk::Format::eR16G16B16A16Uint;
+    case rhi::TextureFormat::rgba16_sint:
+      return vk::Format::eR16G16B16A16Sint;
+    case rhi::TextureFormat::rgba16_float:
+      return vk::Format::eR16G16B16A16Sfloat;
+    case rhi::TextureFormat::r32_uint:
+      return vk::Format::eR32Uint;
+    case rhi::TextureFormat::r32_sint:
+      return vk::Format::eR32Sint;
+    case rhi::TextureFormat::r32_float:
+      return vk::Format::eR32Sfloat;
+    case rhi::TextureFormat::rg32_uint:
+      return vk::Format::eR32G32Uint;
+    case rhi::TextureFormat::rg32_sint:
+      return vk::Format::eR32G32Sint;
+    case rhi::TextureFormat::rg32_float:
+      return vk::Format::eR32G32Sfloat;
+    case rhi::TextureFormat::rgba32_uint:
+      return vk::Format::eR32G32B32A32Uint;
+    case rhi::TextureFormat::rgba32_sint:
+      return vk::Format::eR32G32B32A32Sint;
+    case rhi::TextureFormat::rgba32_float:
+      return vk::Format::eR32G32B32A32Sfloat;
+  }
+  return vk::Format::eUndefined;
+}
+
+vk::ImageType type_of(rhi::TextureDimension dimension) {
+  switch (dimension) {
+    case rhi::TextureDimension::d1:
+      return vk::ImageType::e1D;
+    case rhi::TextureDimension::d3:
+      return vk::ImageType::e3D;
+    default:
+      return vk::ImageType::e2D;
+  }
+}
+
+vk::ImageViewType view_type_of(rhi::TextureDimension dimension) {
+  switch (dimension) {
+    case rhi::TextureDimension::d1:
+      return vk::ImageViewType::e1D;
+    case rhi::TextureDimension::d3:
+      return vk::ImageViewType::e3D;
+    case rhi::TextureDimension::d2_array:
+      return vk::ImageViewType::e2DArray;
+    default:
+      return vk::ImageViewType::e2D;
+  }
+}
+
+std::uint32_t layers_of(const rhi::TextureDesc& desc) {
+  return desc.dimension == rhi::TextureDimension::d2_array ? desc.size[2] : 1;
+}
+
+vk::Extent3D extent_of(const rhi::TextureDesc& desc) {
+  return {.width = desc.size[0],
+          .height = desc.size[1],
+          .depth = desc.dimension == rhi::TextureDimension::d3 ? desc.size[2] : 1};
+}
+
+vk::ImageSubresourceRange all_layers(const rhi::TextureDesc& desc) {
+  return {.aspectMask = vk::ImageAspectFlagBits::eColor, .levelCount = 1, .layerCount = layers_of(desc)};
+}
+
+}  // namespace
+
+Texture::Texture(ContextHandle context, const rhi::TextureDesc& desc)
+    : rhi::Texture(desc), context_(std::move(context)) {
+  translating_errors(desc.label, "create the texture", [&] {
+    image_ = make_image();
+    make_view();
+    // Nobody waits: what uses the texture is submitted later, and begins with a barrier.
+    submit_commands(*context_, desc.label, image_, [&](const vk::raii::CommandBuffer& commands) {
+      change_layout(commands, vk::ImageLayout::eUndefined, vk::ImageLayout::eGeneral);
+    });
+  });
+}
+
+std::shared_ptr<Texture::BackedImage> Texture::make_image() const {
+  const vk::Format format = format_of(desc().format);
+  const vk::ImageType type = type_of(desc().dimension);
+  // Throws where the driver's limit for this format is lower than the device's for all.
+  const vk::ImageFormatProperties limits =
+      context_->physical.handle.getImageFormatProperties(format, type, vk::ImageTiling::eOptimal, usage);
+  if (size_in_bytes() > limits.maxResourceSize)
+    throw rhi::Error(rhi::ErrorCode::out_of_memory, desc().label,
+                     std::to_string(size_in_bytes()) + " bytes are more than the " +
+                         std::to_string(limits.maxResourceSize) + " that the driver gives a texture");
+  const auto image = std::make_shared<BackedImage>();
+  image->handle = context_->device.createImage({.imageType = type,
+                                                .format = format,
+                                                .extent = extent_of(desc()),
+                                                .mipLevels = 1,
+                                                .arrayLayers = layers_of(desc()),
+                                                .samples = vk::SampleCountFlagBits::e1,
+                                                .tiling = vk::ImageTiling::eOptimal,
+                                                .usage = usage});
+  context_->name(image->handle, desc().label);
+  vk::MemoryRequirements requirements = image->handle.getMemoryRequirements();
+  // Whole pages of it, so that no buffer shares one.
+  const std::uint64_t page = context_->physical.buffer_image_granularity;
+  requirements.alignment = std::max(requirements.alignment, page);
+  requirements.size = (requirements.size + page - 1) / page * page;
+  image->memory = allocate(*context_, requirements, MemoryKind::device, desc().label);
+  image->handle.bindMemory(image->memory.memory(), image->memory.offset());
+  return image;
+}
+
+void Texture::make_view() {
+  view_ = context_->device.createImageView({.image = handle(),
+                                            .viewType = view_type_of(desc().dimension),
+                                            .format = format_of(desc().format),
+                                            .subresourceRange = all_layers(desc())});
+  context_->name(view_, desc().label);
+}
+
+void Texture::change_layout(const vk::raii::CommandBuffer& commands, vk::ImageLayout from, vk::ImageLayout to) const {
+  const vk::ImageMemoryBarrier barrier = {
+      .srcAccessMask = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite,
+      .dstAccessMask = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite,
+      .oldLayout = from,
+      .newLayout = to,
+      .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+      .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+      .image = handle(),
+      .subresourceRange = all_layers(desc())};
+  commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eAllCommands, {},
+                           nullptr, nullptr, barrier);
+}
+
+vk::BufferImageCopy Texture::whole(std::uint64_t offset) const {
+  return {.bufferOffset = offset,
+          .imageSubresource = {.aspectMask = vk::ImageAspectFlagBits::eColor, .layerCount = layers_of(desc())},
+          .imageExtent = extent_of(desc())};
+}
+
+}  // namespace tandem::vulkan
