@@ -12,7 +12,7 @@ namespace tandem::rhi {
 
 /// What happens where a ray meets a geometry. Every member may be absent: without `closest_hit` nothing runs for the
 /// closest hit, without `any_hit` every candidate is accepted. With `intersection` the group is for boxes, without for
-/// triangles; a geometry whose hit record names a group for the other kind is not hit.
+/// triangles: a hit record names a group for the kind of its geometry (VUID-vkCmdTraceRaysKHR-*-04735, -04736).
 struct HitGroup {
   ShaderModuleHandle closest_hit;
   ShaderModuleHandle any_hit;

@@ -4,7 +4,8 @@
 
 #include "rhi/device.hpp"
 
-/// The interface over Vulkan 1.2 with VK_KHR_acceleration_structure and, where the hardware has it, VK_KHR_ray_query.
+/// The interface over Vulkan 1.2 with VK_KHR_acceleration_structure and, where the hardware has them, VK_KHR_ray_query
+/// and VK_KHR_ray_tracing_pipeline.
 namespace tandem::vulkan {
 
 /// The devices that qualify: Vulkan 1.2, a compute queue, VK_KHR_acceleration_structure, bufferDeviceAddress and
