@@ -45,6 +45,12 @@ std::vector<Case> all_cases() {
   add_ray_query_procedural_cases(cases);
   add_ray_query_flag_cases(cases);
   add_ray_query_range_cases(cases);
+  add_ray_query_multiple_cases(cases);
+  add_ray_query_watertightness_cases(cases);
+  add_acceleration_structure_format_cases(cases);
+  add_acceleration_structure_build_cases(cases);
+  add_acceleration_structure_instance_cases(cases);
+  add_acceleration_structure_update_cases(cases);
   return cases;
 }
 

@@ -25,5 +25,11 @@ void add_ray_query_traversal_cases(Cases& cases);
 void add_ray_query_procedural_cases(Cases& cases);
 void add_ray_query_flag_cases(Cases& cases);
 void add_ray_query_range_cases(Cases& cases);
+void add_ray_query_multiple_cases(Cases& cases);
+void add_ray_query_watertightness_cases(Cases& cases);
+void add_acceleration_structure_format_cases(Cases& cases);
+void add_acceleration_structure_build_cases(Cases& cases);
+void add_acceleration_structure_instance_cases(Cases& cases);
+void add_acceleration_structure_update_cases(Cases& cases);
 
 }  // namespace tandem::conformance
