@@ -147,6 +147,40 @@ TEST_CASE("t counts in lengths of the direction, whatever the instance scales") 
   CHECK(rayQueryGetIntersectionWorldToObjectEXT(query, true)[3] == vec3(0, 0, 0.375f));
 }
 
+TEST_CASE("positions of 16 bits, in strides, are decoded exactly") {
+  // The same triangle (0, 0), (1, 0), (0, 1) at the height z, in records of five values of which three are a position.
+  const auto hit_at = [](rhi::VertexFormat format, const std::array<std::uint16_t, 3>& zero_one_z) {
+    const auto [zero, one, z] = zero_one_z;
+    const std::uint16_t vertices[3][5] = {{zero, zero, z}, {one, zero, z}, {zero, one, z}};
+    const cpu::EmbreeDevice device;
+    const cpu::TriangleInput input{.vertices = std::as_bytes(std::span(vertices)),
+                                   .vertex_count = 3,
+                                   .vertex_stride = 10,
+                                   .vertex_format = format,
+                                   .triangle_count = 1};
+    const cpu::BottomLevel bottom_level =
+        cpu::BottomLevel::build(device, std::vector<cpu::GeometryInput>{input}, rhi::BuildFlags::none, "short");
+    const rhi::InstanceDesc instance = instance_of(0);
+    const cpu::TopLevel top_level = cpu::TopLevel::build(
+        device, {&instance, 1}, [&](std::uint64_t) { return &bottom_level; }, rhi::BuildFlags::none, "short");
+    rayQueryEXT query = trace(top_level, vec3(0.25f, 0.5f, 0), vec3(0, 0, 1));
+    if (!is_hit(query)) query = trace(top_level, vec3(0.25f, 0.5f, 0), vec3(0, 0, -1));
+    REQUIRE(is_hit(query));
+    // A component other than 0 or 1 would move these.
+    CHECK(rayQueryGetIntersectionBarycentricsEXT(query, true) == vec2(0.25f, 0.5f));
+    const float t = rayQueryGetIntersectionTEXT(query, true);
+    return rayQueryGetIntersectionFrontFaceEXT(query, true) ? -t : t;
+  };
+  using enum rhi::VertexFormat;
+  CHECK(hit_at(half3, {0, 0x3C00, 0x4248}) == 3.140625f);
+  CHECK(hit_at(half3, {0x8000, 0x3C00, 0xC000}) == -2);
+  CHECK(hit_at(half3, {0, 0x3C00, 0x0001}) == 0x1p-24f);  // subnormal
+  CHECK(hit_at(half3, {0, 0x3C00, 0x7BFF}) == 65504);
+  CHECK(hit_at(snorm3, {0, 32767, 0x8000}) == -1);
+  CHECK(hit_at(snorm3, {0, 32767, 0x8001}) == -1);
+  CHECK(hit_at(snorm3, {0, 32767, 16384}) == 16384.0f / 32767.0f);
+}
+
 TEST_CASE("index formats, strides and index gaps") {
   const cpu::EmbreeDevice device;
   // Two triangles over (0, 0) to (1, 1), in vertices of 20 bytes behind one that nothing uses.

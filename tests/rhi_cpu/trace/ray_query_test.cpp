@@ -2,93 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include <array>
 #include <limits>
-#include <utility>
-#include <vector>
+
+#include "tests/rhi_cpu/trace/scripted_level.hpp"
 
 using namespace tandem::kernel;
-
-namespace {
-
-/// A top level whose hits are a script, and that counts what it is asked.
-struct ScriptedLevel : TopLevel {
-  std::vector<Hit> hits;  // in the order of t, each with a primitive index of its own
-  mutable int closest_calls = 0;
-  mutable int occluded_calls = 0;
-  mutable int next_calls = 0;
-  mutable Ray last_ray = {};
-  std::array<Instance, 2> scripted_instances = {
-      Instance{.object_to_world = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-               .world_to_object = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}},
-               .custom_index = 11,
-               .sbt_offset = 21},
-      Instance{.object_to_world = {{2, 0, 0, 10}, {0, 0, -4, 20}, {0, 8, 0, 30}},
-               .world_to_object = {{0.5f, 0, 0, -5}, {0, 0, 0.125f, -3.75f}, {0, -0.25f, 0, 5}},
-               .custom_index = 0xABCDEF,
-               .sbt_offset = 22}};
-
-  explicit ScriptedLevel(std::vector<Hit> script) : TopLevel{}, hits(std::move(script)) {
-    functions = &scripted_functions;
-    instances = scripted_instances.data();
-    instance_count = static_cast<std::uint32_t>(scripted_instances.size());
-    all_opaque = true;
-    has_boxes = false;
-    for (const Hit& hit : hits) {
-      all_opaque = all_opaque && (hit.opaque || hit.is_box);
-      has_boxes = has_boxes || hit.is_box;
-    }
-  }
-  ScriptedLevel(const ScriptedLevel&) = delete;
-  ScriptedLevel& operator=(const ScriptedLevel&) = delete;
-
-  accelerationStructureEXT handle() const { return {this}; }
-
-  static const ScriptedLevel& of(const TopLevel& level) { return static_cast<const ScriptedLevel&>(level); }
-
-  static bool closest(const TopLevel& level, const Ray& ray, Hit& hit) {
-    ++of(level).closest_calls;
-    of(level).last_ray = ray;
-    if (of(level).hits.empty()) return false;
-    hit = of(level).hits.front();
-    return true;
-  }
-  static bool occluded(const TopLevel& level, const Ray& ray) {
-    ++of(level).occluded_calls;
-    of(level).last_ray = ray;
-    return !of(level).hits.empty();
-  }
-  static std::uint32_t next_hits(const TopLevel& level, const Ray& ray, const Hit* previous, Hit* hits,
-                                 std::uint32_t capacity) {
-    ++of(level).next_calls;
-    of(level).last_ray = ray;
-    std::uint32_t count = 0;
-    bool is_behind = previous == nullptr;
-    for (const Hit& candidate : of(level).hits) {
-      if (is_behind && count < capacity) hits[count++] = candidate;
-      if (previous != nullptr && candidate.primitive_index == previous->primitive_index) is_behind = true;
-    }
-    return count;
-  }
-  static constexpr TraceFunctions scripted_functions = {&closest, &occluded, &next_hits, nullptr};
-};
-
-Hit triangle(float t, std::uint32_t primitive, bool opaque) {
-  return {.t = t,
-          .barycentrics = {0.25f, 0.5f},
-          .instance_index = 1,
-          .geometry_index = 3,
-          .primitive_index = primitive,
-          .front_face = true,
-          .opaque = opaque,
-          .is_box = false};
-}
-
-void initialize(rayQueryEXT& query, const ScriptedLevel& level, uint flags = 0) {
-  rayQueryInitializeEXT(query, level.handle(), flags, 0xFF, vec3(1, 2, 3), 0.5f, vec3(4, 5, 6), 100.0f);
-}
-
-}  // namespace
+using namespace tandem::test;
 
 TEST_CASE("an opaque scene is one closest-hit call and never a candidate") {
   const ScriptedLevel level({triangle(7, 42, true)});
