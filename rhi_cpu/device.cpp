@@ -187,6 +187,8 @@ rhi::DeviceInfo device_info(std::string_view name) {
                            .trace_rays_indirect = true,
                            .primitive_culling = true,
                            .null_acceleration_structure = true,
+                           .buffer_references = true,
+                           .non_uniform_indexing = true,
                            .scalar_block_layout = true,
                            .shader_int64 = true,
                            .shader_float64 = true,

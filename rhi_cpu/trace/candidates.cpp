@@ -118,7 +118,7 @@ bool decide(CandidateContext& base, Hit& hit) {
   if (hit.is_box)
     decision =
         context.visitor->box(context.visitor->context, hit, context.found ? context.committed->t : context.ray->t_max);
-  else if (!hit.opaque)
+  else if (!hit.opaque || context.visitor->visits_opaque_triangles)
     decision = context.visitor->triangle(context.visitor->context, hit);
   if (decision == kernel::CandidateDecision::ignore) return false;
   *context.committed = hit;

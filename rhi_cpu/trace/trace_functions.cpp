@@ -78,7 +78,8 @@ bool occluded(const kernel::TopLevel& top_level, const Ray& ray) {
 }
 
 bool visit(const kernel::TopLevel& top_level, const Ray& ray, const kernel::CandidateVisitor& visitor, Hit& committed) {
-  if (!kernel::can_meet_candidates(top_level, ray.flags)) return closest(top_level, ray, committed);
+  if (!visitor.visits_opaque_triangles && !kernel::can_meet_candidates(top_level, ray.flags))
+    return closest(top_level, ray, committed);
   return visit_candidates(scene_of(top_level), ray, visitor, committed);
 }
 
