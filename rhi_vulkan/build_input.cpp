@@ -39,13 +39,19 @@ vk::IndexType index_type(rhi::IndexFormat format) {
   }
 }
 
-/// Vulkan knows no format of three 16-bit components that every device builds from: the fourth of these is ignored.
-vk::Format vertex_format(rhi::VertexFormat format) {
+/// `exact` where the device builds from it, else `padded`, which every device builds from: its fourth component is
+/// ignored. (lavapipe 25.0.7 offers the first for halves, and does not ignore a NaN in the fourth of the second.)
+vk::Format three_components(const PhysicalDevice& device, vk::Format exact, vk::Format padded) {
+  const vk::FormatFeatureFlags features = device.handle.getFormatProperties(exact).bufferFeatures;
+  return features & vk::FormatFeatureFlagBits::eAccelerationStructureVertexBufferKHR ? exact : padded;
+}
+
+vk::Format vertex_format(rhi::VertexFormat format, const PhysicalDevice& device) {
   switch (format) {
     case rhi::VertexFormat::half3:
-      return vk::Format::eR16G16B16A16Sfloat;
+      return three_components(device, vk::Format::eR16G16B16Sfloat, vk::Format::eR16G16B16A16Sfloat);
     case rhi::VertexFormat::snorm3:
-      return vk::Format::eR16G16B16A16Snorm;
+      return three_components(device, vk::Format::eR16G16B16Snorm, vk::Format::eR16G16B16A16Snorm);
     default:
       return vk::Format::eR32G32B32Sfloat;
   }
@@ -62,7 +68,7 @@ std::uint64_t address_of(const rhi::BufferRange& range, BuildInput& input, const
 void add(const rhi::TriangleGeometry& triangles, BuildInput& input, const ContextHandle& context,
          const std::string& label) {
   const vk::AccelerationStructureGeometryTrianglesDataKHR data = {
-      .vertexFormat = vertex_format(triangles.vertex_format),
+      .vertexFormat = vertex_format(triangles.vertex_format, context->physical),
       .vertexData = {.deviceAddress = address_of(triangles.vertices, input, context, label)},
       .vertexStride = triangles.vertex_stride,
       .maxVertex = std::max(triangles.vertex_count, 1u) - 1,

@@ -168,7 +168,7 @@ TEST_CASE("vulkan: the sizes of a structure are known from its creation on") {
   CHECK(fixed.structure->sizes().update_scratch == 0);
 }
 
-TEST_CASE("vulkan: positions of three 16-bit components, tightly packed to the end of their buffer") {
+TEST_CASE("vulkan: positions of three 16-bit components, up to the end of their buffer") {
   const test::SilentDevice device;
   rhi::TriangleGeometry triangle;
   triangle.vertex_count = 3;
@@ -179,6 +179,15 @@ TEST_CASE("vulkan: positions of three 16-bit components, tightly packed to the e
     triangle.vertex_format = rhi::VertexFormat::half3;
     triangle.vertices = {test::buffer_of(
         *device, std::vector<std::uint16_t>{0, 0, half(-2), half(4), 0, half(-2), 0, half(4), half(-2)}, "halves")};
+    size = 4;
+  }
+  SUBCASE("halves with NaNs between them, as a fourth component that nobody reads") {
+    triangle.vertex_format = rhi::VertexFormat::half3;
+    triangle.vertex_stride = 8;
+    triangle.vertices = {test::buffer_of(
+        *device,
+        std::vector<std::uint16_t>{0, 0, half(-2), 0xffff, half(4), 0, half(-2), 0xffff, 0, half(4), half(-2), 0xffff},
+        "halves")};
     size = 4;
   }
   SUBCASE("normalised integers") {
