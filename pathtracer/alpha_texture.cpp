@@ -1,20 +1,24 @@
 #include "pathtracer/alpha_texture.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <memory>
 #include <string>
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include "pathtracer/error.hpp"
+#include "pathtracer/image_codec.hpp"
 #include "pathtracer/lights.hpp"
 
 namespace tandem::pathtracer {
 namespace {
 
 /// The most pixels along a side; a file that claims more is broken.
-constexpr int largest_side = 1 << 15;
+constexpr std::uint32_t largest_side = 1u << 15;
+
+std::uint8_t to_8bit(float value) {
+  return value > 0 ? static_cast<std::uint8_t>(std::lround(255 * std::min(value, 1.0f))) : std::uint8_t{0};
+}
 
 }  // namespace
 
@@ -22,29 +26,25 @@ AlphaTexture load_alpha_texture(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& why) {
     return Error(fmt::format("cannot read the texture '{}': {}", path.string(), why.substr(0, why.find('\n'))));
   };
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string());
-  if (!input) throw fail(OIIO::geterror());
-  const OIIO::ImageSpec spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > largest_side || spec.height > largest_side)
-    throw fail(fmt::format("a size of {}x{} is not between 1 and {}", spec.width, spec.height, largest_side));
-  AlphaTexture texture{
-      .width = static_cast<std::uint32_t>(spec.width), .height = static_cast<std::uint32_t>(spec.height), .texels = {}};
-  const std::size_t count = std::size_t{texture.width} * texture.height;
-  const auto read = [&](int first_channel, int channel_count) {
-    std::vector<std::uint8_t> values(count * static_cast<std::size_t>(channel_count));
-    if (!input->read_image(0, 0, first_channel, first_channel + channel_count, OIIO::TypeDesc::UINT8, values.data()))
-      throw fail(input->geterror());
-    return values;
-  };
-  if (spec.alpha_channel >= 0 || spec.nchannels < 3) {
-    texture.texels = read(spec.alpha_channel >= 0 ? spec.alpha_channel : 0, 1);
-    return texture;
+  DecodedImage image;
+  try {
+    image = decode_image(path);
+  } catch (const Error& error) {
+    throw fail(error.what());
   }
-  const std::vector<std::uint8_t> colors = read(0, 3);
+  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
+    throw fail(fmt::format("a size of {}x{} is not between 1 and {}", image.width, image.height, largest_side));
+  AlphaTexture texture{.width = image.width, .height = image.height, .texels = {}};
+  const std::size_t count = std::size_t{image.width} * image.height;
   texture.texels.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const glm::vec3 color(colors[3 * i], colors[3 * i + 1], colors[3 * i + 2]);
-    texture.texels.push_back(static_cast<std::uint8_t>(std::lround(luminance(color))));
+    const float* values = image.values.data() + i * image.channels;
+    float alpha = values[0];
+    if (image.channels == 2 || image.channels == 4)
+      alpha = values[image.channels - 1];
+    else if (image.channels == 3)
+      alpha = static_cast<float>(luminance(glm::vec3(values[0], values[1], values[2])));
+    texture.texels.push_back(to_8bit(alpha));
   }
   return texture;
 }

@@ -51,17 +51,21 @@ AlphaTexels alpha_texels(const Scene& scene) {
 
 }  // namespace
 
+Scene in_device_order(const Scene& scene) {
+  Scene sorted = scene;
+  std::ranges::stable_partition(sorted.triangles,
+                                [&](const GpuTriangle& triangle) { return !is_transparent(scene, triangle); });
+  return sorted;
+}
+
 DeviceScene::DeviceScene(rhi::Device& device, const Scene& scene)
     : triangle_count_(static_cast<std::uint32_t>(scene.triangles.size())) {
   const auto is_opaque = [&](const GpuTriangle& triangle) { return !is_transparent(scene, triangle); };
   opaque_count_ = static_cast<std::uint32_t>(std::ranges::count_if(scene.triangles, is_opaque));
-  if (transparency()) {
-    Scene sorted = scene;
-    std::ranges::stable_partition(sorted.triangles, is_opaque);
-    upload(device, sorted);
-  } else {
+  if (transparency())
+    upload(device, in_device_order(scene));
+  else
     upload(device, scene);
-  }
 }
 
 void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
@@ -128,12 +132,18 @@ void DeviceScene::record_build(rhi::CommandList& list) {
   top_ = {};
 }
 
-std::vector<rhi::BindGroupEntry> DeviceScene::entries() const {
-  std::vector<rhi::BindGroupEntry> entries = {{.binding = 0, .resource = top_level_}};
-  for (const rhi::BufferHandle& buffer :
-       {positions_, normals_, triangles_, materials_, lights_, texture_coordinates_, alpha_textures_, alpha_texels_})
-    if (buffer)
-      entries.push_back({.binding = static_cast<std::uint32_t>(entries.size()), .resource = rhi::BufferRange{buffer}});
+std::vector<rhi::BindGroupEntry> DeviceScene::entries(const rhi::PipelineInterface& interface) const {
+  const rhi::BufferHandle buffers[] = {positions_,           normals_,        triangles_,   materials_, lights_,
+                                       texture_coordinates_, alpha_textures_, alpha_texels_};
+  std::vector<rhi::BindGroupEntry> entries;
+  for (const rhi::ShaderBinding& binding : interface.bindings) {
+    if (binding.set != 0) continue;
+    if (binding.binding == 0)
+      entries.push_back({.binding = 0, .resource = top_level_});
+    else
+      entries.push_back(
+          {.binding = binding.binding, .resource = rhi::BufferRange{std::span(buffers)[binding.binding - 1]}});
+  }
   return entries;
 }
 

@@ -9,6 +9,9 @@
 
 namespace tandem::pathtracer {
 
+/// The scene with its transparent triangles after the others: the triangles as devices number them.
+Scene in_device_order(const Scene& scene);
+
 /// A scene in a device's memory: what set 0 of shaders/scene.glsl binds.
 class DeviceScene {
  public:
@@ -18,8 +21,8 @@ class DeviceScene {
 
   /// Builds the acceleration structures; to be called once, before the first ray, and lets go of what only that needs.
   void record_build(rhi::CommandList& list);
-  /// For a bind group of set 0 of a PathTraceProgram with the scene's transparency().
-  std::vector<rhi::BindGroupEntry> entries() const;
+  /// For a bind group of set 0 of a PathTraceProgram with the scene's transparency(): what it uses of the scene.
+  std::vector<rhi::BindGroupEntry> entries(const rhi::PipelineInterface& interface) const;
 
   std::uint32_t triangle_count() const noexcept { return triangle_count_; }
   /// Those before the transparent ones, which come last on the device.

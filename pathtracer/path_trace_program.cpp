@@ -9,22 +9,53 @@
 namespace tandem::pathtracer {
 namespace {
 
-rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, bool transparency) {
-  const rhi::ShaderModuleDesc shader =
-      transparency ? rhi::ShaderModuleDesc{shaders::path_trace_transparent(), "path_trace_transparent.comp"}
-                   : rhi::ShaderModuleDesc{shaders::path_trace(), "path_trace.comp"};
-  return device.create_compute_pipeline(
-      {.shader = device.create_shader_module(shader), .specialization = {}, .label = "path tracer"});
+/// What differs between the tasks: the shader that each begins with.
+struct EntryPoint {
+  std::span<const std::uint32_t> spirv;
+  const char* label;
+};
+
+EntryPoint compute_shader(PathTraceTask task, bool transparency) {
+  switch (task) {
+    case PathTraceTask::log:
+      return transparency ? EntryPoint{shaders::path_log_transparent(), "path_log_transparent.comp"}
+                          : EntryPoint{shaders::path_log(), "path_log.comp"};
+    case PathTraceTask::answer:
+      return transparency ? EntryPoint{shaders::ray_answer_transparent(), "ray_answer_transparent.comp"}
+                          : EntryPoint{shaders::ray_answer(), "ray_answer.comp"};
+    default:
+      return transparency ? EntryPoint{shaders::path_trace_transparent(), "path_trace_transparent.comp"}
+                          : EntryPoint{shaders::path_trace(), "path_trace.comp"};
+  }
+}
+
+EntryPoint ray_generation_shader(PathTraceTask task, bool transparency) {
+  switch (task) {
+    case PathTraceTask::log:
+      return transparency ? EntryPoint{shaders::path_log_transparent_rgen(), "path_log_transparent.rgen"}
+                          : EntryPoint{shaders::path_log_rgen(), "path_log.rgen"};
+    case PathTraceTask::answer:
+      return transparency ? EntryPoint{shaders::ray_answer_transparent_rgen(), "ray_answer_transparent.rgen"}
+                          : EntryPoint{shaders::ray_answer_rgen(), "ray_answer.rgen"};
+    default:
+      return transparency ? EntryPoint{shaders::path_trace_transparent_rgen(), "path_trace_transparent.rgen"}
+                          : EntryPoint{shaders::path_trace_rgen(), "path_trace.rgen"};
+  }
+}
+
+rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoint& shader) {
+  return device.create_compute_pipeline({.shader = device.create_shader_module({shader.spirv, shader.label}),
+                                         .specialization = {},
+                                         .label = "path tracer"});
 }
 
 /// One ray generation, one miss and one hit record: rays of both kinds share them.
-rhi::ShaderTableHandle shader_table(rhi::Device& device, bool transparency) {
+rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_generation, bool transparency) {
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
     return device.create_shader_module({spirv, label});
   };
   rhi::RayTracingPipelineDesc desc;
-  desc.ray_generation = {transparency ? module(shaders::path_trace_transparent_rgen(), "path_trace_transparent.rgen")
-                                      : module(shaders::path_trace_rgen(), "path_trace.rgen")};
+  desc.ray_generation = {module(ray_generation.spirv, ray_generation.label)};
   desc.miss = {module(shaders::path_trace_rmiss(), "path_trace.rmiss")};
   rhi::HitGroup group;
   group.closest_hit = module(shaders::path_trace_rchit(), "path_trace.rchit");
@@ -42,12 +73,13 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, bool transparency) {
 
 }  // namespace
 
-PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, bool transparency) : form_(form) {
+PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, bool transparency, PathTraceTask task)
+    : form_(form) {
   if (form == TraceForm::query) {
-    compute_ = compute_pipeline(device, transparency);
+    compute_ = compute_pipeline(device, compute_shader(task, transparency));
     pipeline_ = compute_;
   } else {
-    table_ = shader_table(device, transparency);
+    table_ = shader_table(device, ray_generation_shader(task, transparency), transparency);
     pipeline_ = table_->desc().pipeline;
   }
 }

@@ -59,8 +59,10 @@ Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSet
   if (device_->info().capabilities.timestamps)
     timestamps_ = device_->create_query_pool({.count = 2, .label = "dispatch times"});
   build_milliseconds_ = execute("build of " + scene_name_, [&](rhi::CommandList& list) { scene_.record_build(list); });
-  scene_group_ = device_->create_bind_group(
-      {.pipeline = program_.pipeline(), .set = 0, .entries = scene_.entries(), .label = "scene"});
+  scene_group_ = device_->create_bind_group({.pipeline = program_.pipeline(),
+                                             .set = 0,
+                                             .entries = scene_.entries(program_.pipeline()->interface()),
+                                             .label = "scene"});
   restart(settings);
 }
 

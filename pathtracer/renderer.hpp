@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "pathtracer/path_trace_program.hpp"
 #include "pathtracer/scene.hpp"
 #include "pathtracer/trace_form.hpp"
+#include "pathtracer/traced_ray.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::pathtracer {
@@ -77,7 +79,15 @@ class Renderer {
   /// version.
   ImageMetadata metadata() const;
 
+  /// The rays that each path traces under the settings, in order, with the answers of this device. Changes nothing.
+  std::vector<std::vector<TracedRay>> log_paths(std::span<const PathId> paths);
+  /// This device's answers to rays that it may not have traced itself.
+  std::vector<std::uint32_t> answer(std::span<const TracedRay> rays);
+
  private:
+  /// Runs a task over buffers that are bound from binding 2 of set 1 on. @param count invocations
+  void run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers, std::uint32_t count,
+                std::uint32_t sample_count);
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);

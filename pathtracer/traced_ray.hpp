@@ -6,7 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-/// Rays of the path tracer, one by one: TracedRay of shaders/ray_log.glsl, byte for byte (std430).
+/// Rays of the path tracer, one by one: TracedRay of shaders/trace/traced_ray.glsl, byte for byte (std430).
 namespace tandem::pathtracer {
 
 enum class RayKind : std::uint32_t {
@@ -23,8 +23,11 @@ struct TracedRay {
   float t_max = 0;  ///< in lengths of the direction
   glm::vec3 direction{0};
   RayKind kind = RayKind::closest;
-  std::uint32_t answer = no_triangle;  ///< closest: index of the triangle, or no_triangle; occlusion: 1 or 0
-  std::uint32_t padding[3] = {0, 0, 0};
+  std::uint32_t answer = no_triangle;  ///< closest: triangle (in_device_order), or no_triangle; occlusion: 1 or 0
+  /// What decides which transparent triangles the ray meets; see shaders/random.glsl.
+  std::uint32_t random_pixel = 0;
+  std::uint32_t random_sample = 0;
+  std::uint32_t random_dimension = 0;
 };
 static_assert(sizeof(TracedRay) == 48 && offsetof(TracedRay, answer) == 32);
 

@@ -23,6 +23,8 @@ struct Options {
   RenderOptions render;
   std::string a = "cpu";
   std::string b = "vulkan";
+  std::string arbiter;  ///< empty: nobody is asked
+  std::uint64_t arbiter_pixels = 1000;
   std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of `render`
   std::optional<pathtracer::TraceForm> trace_b;
   std::filesystem::path json;    ///< empty: none
@@ -71,6 +73,8 @@ int compare_devices(const Options& options) {
   const rhi::DeviceHandle device_b = open_device(options.b, options.render);
   pathtracer::Renderer renderer_a(device_a, scene, settings, options.trace_a ? options.trace_a : options.render.trace);
   pathtracer::Renderer renderer_b(device_b, scene, settings, options.trace_b ? options.trace_b : options.render.trace);
+  std::optional<pathtracer::Renderer> arbiter;
+  if (!options.arbiter.empty()) arbiter.emplace(open_device(options.arbiter, options.render), scene, settings);
   DiffReport report;
   const std::vector<OutputFile> files = output_files(options, report);
   const std::optional<OutputFolder> folder =
@@ -84,6 +88,11 @@ int compare_devices(const Options& options) {
   report.b = render(renderer_b, device_b->info(), options.render.samples);
   report.metrics = compare::measure(report.a.image, report.b.image);
   report.verdict = compare::judge(report.metrics, report.tolerance);
+  if (arbiter) {
+    report.arbiter = options.arbiter;
+    report.examination = compare::examine(renderer_a, renderer_b, *arbiter, report.a.image, report.b.image,
+                                          options.render.samples, scene, options.arbiter_pixels);
+  }
   fmt::print("{}", table(report));
   write_or_rescue(files);
   return report.verdict.agree ? exit_code::success : exit_code::differ;
@@ -100,6 +109,12 @@ void add_diff_command(CLI::App& app, Action& action) {
   command->add_option("--b", options->b, "The second device")->type_name("D2")->capture_default_str();
   add_trace_form(*command, "--trace-a", options->trace_a, "As --trace, for the first device only");
   add_trace_form(*command, "--trace-b", options->trace_b, "As --trace, for the second device only");
+  command
+      ->add_option("--arbiter", options->arbiter,
+                   "Ask this device, for the pixels that differ, which of the two chose the right triangle: cpu-exact")
+      ->type_name("D3");
+  add_whole_number(*command, "--arbiter-pixels", options->arbiter_pixels, 1, std::uint64_t{1} << 24,
+                   "Pixels to examine at most");
   command->add_option("--json", options->json, "Write all numbers and the verdict as JSON")->type_name("FILE");
   command
       ->add_option("--out", options->folder,
@@ -121,7 +136,8 @@ void add_diff_command(CLI::App& app, Action& action) {
       "  tandem diff scenes/cornell_box.obj --a cpu --b vulkan\n"
       "  tandem diff scenes/cornell_box.obj --a vulkan:0 --b vulkan:1 --spp 64 --json diff.json --out diff\n"
       "  tandem diff scenes/grille.obj --a cpu --trace-a query --b cpu --trace-b pipeline --min-bit-equal 1\n"
-      "  tandem diff model.obj --a cpu --b vulkan --min-bit-equal 0.9999");
+      "  tandem diff model.obj --a cpu --b vulkan --min-bit-equal 0.9999\n"
+      "  tandem diff model.obj --a cpu --b vulkan --arbiter cpu-exact");
   command->callback([&action, options] { action = [options] { return compare_devices(*options); }; });
 }
 

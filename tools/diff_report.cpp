@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "tools/device_json.hpp"
+#include "tools/examination_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -67,6 +68,7 @@ std::string table(const DiffReport& report) {
   text += '\n';
   line("verdict", compare::name(report.verdict));
   for (const std::string& reason : report.verdict.reasons) line("", reason);
+  if (report.examination) text += '\n' + table(*report.examination, report.arbiter);
   return text;
 }
 
@@ -116,6 +118,7 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
                        {"bit_equal", report.tolerance.bit_equal},
                        {"mean", report.tolerance.mean},
                        {"non_finite", report.tolerance.non_finite}};
+  if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
   json["version"] = TANDEM_VERSION;
   return json;
 }

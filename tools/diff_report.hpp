@@ -1,8 +1,10 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
+#include "compare/examination.hpp"
 #include "compare/metrics.hpp"
 #include "compare/verdict.hpp"
 #include "tools/render_options.hpp"
@@ -19,6 +21,8 @@ struct DiffReport {
   compare::Metrics metrics;
   compare::Tolerance tolerance;
   compare::Verdict verdict;
+  std::string arbiter;                              ///< the device that judged; empty: none was asked
+  std::optional<compare::Examination> examination;  ///< of the pixels that differ, where an arbiter was asked
 };
 
 /// The aligned table for people, with a line break at its end.

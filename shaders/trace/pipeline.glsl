@@ -16,24 +16,23 @@ const uint OPACITY_FLAGS = gl_RayFlagsNoneEXT;
 const uint OPACITY_FLAGS = gl_RayFlagsOpaqueEXT;
 #endif
 
-uint trace_closest(vec3 origin, vec3 direction, RandomKey key, uint dimension) {
+uint closest_triangle(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   ray_payload.triangle = NO_TRIANGLE;
 #ifdef TANDEM_TRANSPARENCY
   ray_payload.random = random_bits(key, dimension).x;
 #endif
-  traceRayEXT(scene_tlas, OPACITY_FLAGS, 0xff, 0, 0, 0, origin, 0.0, direction, RAY_LENGTH, 0);
+  traceRayEXT(scene_tlas, OPACITY_FLAGS, 0xff, 0, 0, 0, origin, 0.0, direction, t_max, 0);
   return ray_payload.triangle;
 }
 
-bool trace_occluded(vec3 from, vec3 to, RandomKey key, uint dimension) {
-  precise vec3 direction = to - from;
+bool is_occluded(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   const uint flags = OPACITY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
   // No closest-hit shader runs: what the miss shader does not change is a hit.
   ray_payload.triangle = 0;
 #ifdef TANDEM_TRANSPARENCY
   ray_payload.random = random_bits(key, dimension).x;
 #endif
-  traceRayEXT(scene_tlas, flags, 0xff, 0, 0, 0, from, 0.0, direction, 1.0, 0);
+  traceRayEXT(scene_tlas, flags, 0xff, 0, 0, 0, origin, 0.0, direction, t_max, 0);
   return ray_payload.triangle != NO_TRIANGLE;
 }
 

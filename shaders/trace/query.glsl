@@ -15,12 +15,12 @@ const uint OPACITY_FLAGS = gl_RayFlagsOpaqueEXT;
 
 /// Index of the closest triangle along a ray, or NO_TRIANGLE. The dimension belongs to this ray alone: it decides which
 /// transparent triangles the ray meets.
-uint trace_closest(vec3 origin, vec3 direction, RandomKey key, uint dimension) {
+uint closest_triangle(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
 #ifdef TANDEM_TRANSPARENCY
   uint random = random_bits(key, dimension).x;
 #endif
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene_tlas, OPACITY_FLAGS, 0xff, origin, 0.0, direction, RAY_LENGTH);
+  rayQueryInitializeEXT(query, scene_tlas, OPACITY_FLAGS, 0xff, origin, 0.0, direction, t_max);
   while (rayQueryProceedEXT(query)) {
 #ifdef TANDEM_TRANSPARENCY
     uint candidate = triangle_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
@@ -35,21 +35,20 @@ uint trace_closest(vec3 origin, vec3 direction, RandomKey key, uint dimension) {
                         rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
 }
 
-/// Whether anything lies between two points. The dimension as for trace_closest.
-bool trace_occluded(vec3 from, vec3 to, RandomKey key, uint dimension) {
+/// Whether there is any triangle along a ray. The dimension as for closest_triangle.
+bool is_occluded(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
 #ifdef TANDEM_TRANSPARENCY
   uint random = random_bits(key, dimension).x;
 #endif
-  precise vec3 direction = to - from;
   const uint flags = OPACITY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, scene_tlas, flags, 0xff, from, 0.0, direction, 1.0);
+  rayQueryInitializeEXT(query, scene_tlas, flags, 0xff, origin, 0.0, direction, t_max);
   while (rayQueryProceedEXT(query)) {
 #ifdef TANDEM_TRANSPARENCY
     uint candidate = triangle_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
                                     rayQueryGetIntersectionGeometryIndexEXT(query, false),
                                     rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
-    if (meets_triangle(candidate, from, direction, random)) rayQueryConfirmIntersectionEXT(query);
+    if (meets_triangle(candidate, origin, direction, random)) rayQueryConfirmIntersectionEXT(query);
 #endif
   }
   return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;

@@ -1,0 +1,58 @@
+#include "compare/examination.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "pathtracer/device_scene.hpp"
+
+namespace tandem::compare {
+
+std::uint64_t Examination::count(Ruling ruling) const {
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(disputes, [ruling](const JudgedDispute& each) { return each.judgement.ruling == ruling; }));
+}
+
+std::vector<glm::uvec2> differing_pixels(const pathtracer::Image& a, const pathtracer::Image& b, std::size_t limit,
+                                         std::uint64_t& differing_count) {
+  std::vector<glm::uvec2> pixels;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    if (std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(a.pixels[i])) != 0)
+      pixels.emplace_back(static_cast<std::uint32_t>(i % a.width), static_cast<std::uint32_t>(i / a.width));
+  differing_count = pixels.size();
+  if (pixels.size() <= limit) return pixels;
+  std::vector<glm::uvec2> some;
+  for (std::size_t i = 0; i < limit; ++i) some.push_back(pixels[i * pixels.size() / limit]);
+  return some;
+}
+
+Examination examine(pathtracer::Renderer& a, pathtracer::Renderer& b, pathtracer::Renderer& arbiter,
+                    const pathtracer::Image& image_a, const pathtracer::Image& image_b, std::uint32_t samples,
+                    const pathtracer::Scene& scene, std::size_t limit) {
+  Examination result;
+  std::vector<pathtracer::PathId> paths;
+  for (const glm::uvec2& pixel : differing_pixels(image_a, image_b, limit, result.differing_pixels)) {
+    ++result.examined_pixels;
+    for (std::uint32_t sample = 0; sample < samples; ++sample) paths.push_back({.pixel = pixel, .sample = sample});
+  }
+  const std::vector<std::vector<pathtracer::TracedRay>> log_a = a.log_paths(paths), log_b = b.log_paths(paths);
+  std::vector<Dispute> disputes;
+  for (std::size_t first = 0; first < paths.size(); first += samples) {
+    bool parted = false;
+    for (std::size_t i = first; i < first + samples; ++i) {
+      const PathComparison comparison = compare_paths(paths[i], log_a[i], log_b[i]);
+      result.parted_by_dispute += comparison.parting == Parting::dispute ? 1 : 0;
+      result.parted_by_rounding += comparison.parting == Parting::rounding ? 1 : 0;
+      result.parted_by_length += comparison.parting == Parting::length ? 1 : 0;
+      parted = parted || comparison.parting != Parting::none;
+      if (comparison.dispute) disputes.push_back(*comparison.dispute);
+    }
+    if (!parted) ++result.unparted_pixels;
+  }
+  const std::vector<Judgement> judgements =
+      arbitrate(disputes, pathtracer::in_device_order(scene),
+                [&](std::span<const pathtracer::TracedRay> rays) { return arbiter.answer(rays); });
+  for (std::size_t i = 0; i < disputes.size(); ++i) result.disputes.push_back({disputes[i], judgements[i]});
+  return result;
+}
+
+}  // namespace tandem::compare

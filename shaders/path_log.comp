@@ -1,0 +1,10 @@
+// Writes down the rays of paths by ray queries, for scenes in which every triangle is opaque.
+#version 460
+#extension GL_EXT_ray_query : require
+#extension GL_GOOGLE_include_directive : require
+
+layout(local_size_x = 64) in;
+
+#include "path_log.glsl"
+
+void main() { path_log(gl_GlobalInvocationID.x); }
