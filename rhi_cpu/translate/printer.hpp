@@ -118,9 +118,11 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_struct_memory(std::uint32_t struct_type_id);
   void print_struct_memory_functions();
 
-  // printer_operations.cpp: everything that computes.
+  // printer_composites.cpp: calls, and values made of values.
   void print_call(Operands ops, std::uint32_t length);
   void print_composite(spv::Op op, Operands ops, std::uint32_t length);
+
+  // printer_operations.cpp: everything that computes.
   bool print_arithmetic(spv::Op op, Operands ops);
   bool print_relation(spv::Op op, Operands ops);
   bool print_conversion(spv::Op op, Operands ops);
@@ -128,7 +130,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   bool print_matrix(spv::Op op, Operands ops);
   void print_extended_result(Operands ops, const std::string& low, const std::string& high);
 
-  // printer_instructions.cpp: which instruction goes where; ray queries.
+  // printer_ray_query.cpp
   void print_ray_query(spv::Op op, Operands ops);
 
   // printer_ray_tracing.cpp: the stages of a ray tracing pipeline.
