@@ -73,10 +73,15 @@ void check_owner(const rhi::TriangleGeometry& triangles, const DeviceState& devi
 
 void check_owner(const rhi::AabbGeometry& boxes, const DeviceState& device) { check_owner(boxes.boxes, device); }
 
-template <typename Built>
-void require_built(const Built& built, const std::string& label, const char* what) {
-  if (built == nullptr)
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, label, fmt::format("it is {} before it is built", what));
+void require(bool holds, const std::string& label, const std::string& why) {
+  if (!holds) throw rhi::Error(rhi::ErrorCode::invalid_argument, label, why);
+}
+
+constexpr const char* never_built = "it is updated, but was never built";
+
+/// Of a compacted copy, whose label is the one at fault.
+void require_source(bool is_built, const std::string& source, const std::string& label) {
+  require(is_built, label, fmt::format("the structure '{}', to be compacted, was never built", source));
 }
 
 template <typename Desc>
@@ -110,7 +115,7 @@ void BottomLevelStructure::build(const rhi::BottomLevelDesc& desc) {
 }
 
 void BottomLevelStructure::update(const rhi::BottomLevelDesc& desc) {
-  require_built(built_, label(), "updated");
+  require(built_ != nullptr, label(), never_built);
   // What a compacted copy shares must not change with this one.
   if (built_.use_count() > 1)
     build(desc);
@@ -119,9 +124,10 @@ void BottomLevelStructure::update(const rhi::BottomLevelDesc& desc) {
 }
 
 std::shared_ptr<BottomLevelStructure> BottomLevelStructure::compacted(std::string label) const {
-  require_built(built_, AccelerationStructure::label(), "compacted");
+  require_source(built_ != nullptr, AccelerationStructure::label(), label);
   auto copy = std::make_shared<BottomLevelStructure>(device_, relabelled(created_from_, std::move(label)));
   copy->set_built(built_);
+  copy->is_compacted_ = true;
   return copy;
 }
 
@@ -161,14 +167,18 @@ void TopLevelStructure::build(const rhi::TopLevelDesc& desc) {
 }
 
 void TopLevelStructure::update(const rhi::TopLevelDesc& desc) {
-  require_built(built_, label(), "updated");
+  require(built_ != nullptr, label(), never_built);
+  const std::uint32_t count = view()->instance_count;
+  require(desc.instance_count == count, label(),
+          fmt::format("an update with {} instances of a structure built with {}", desc.instance_count, count));
   build(desc);
 }
 
 std::shared_ptr<TopLevelStructure> TopLevelStructure::compacted(std::string label) const {
-  require_built(built_, AccelerationStructure::label(), "compacted");
+  require_source(built_ != nullptr, AccelerationStructure::label(), label);
   auto copy = std::make_shared<TopLevelStructure>(device_, relabelled(created_from_, std::move(label)));
   copy->built_ = built_;
+  copy->is_compacted_ = true;
   return copy;
 }
 

@@ -13,7 +13,7 @@ namespace tandem::cpu {
 /// A bottom level of the rhi. Its address is a number of the device's registry, not one of memory.
 ///
 /// No tracer of ours can shrink what it has built, so a compacted copy shares the memory of its source instead, which
-/// is to take none, until one of the two is built or updated.
+/// is to take none, until one of the two changes.
 class BottomLevelStructure final : public rhi::AccelerationStructure {
  public:
   BottomLevelStructure(DeviceStateHandle device, const rhi::BottomLevelDesc& desc);
@@ -31,6 +31,8 @@ class BottomLevelStructure final : public rhi::AccelerationStructure {
   void update(const rhi::BottomLevelDesc& desc);
   /// Throws Error when nothing is built. To be called while no command list executes.
   std::shared_ptr<BottomLevelStructure> compacted(std::string label) const;
+  /// A copy can be updated, but not be built.
+  bool is_compacted() const noexcept { return is_compacted_; }
 
  private:
   void set_built(std::shared_ptr<BuiltBottomLevel> built);
@@ -39,6 +41,7 @@ class BottomLevelStructure final : public rhi::AccelerationStructure {
   rhi::BottomLevelDesc created_from_;
   std::uint64_t address_;
   std::shared_ptr<BuiltBottomLevel> built_;  ///< null as long as it is not built
+  bool is_compacted_ = false;
 };
 
 /// A top level of the rhi. A compacted copy shares the memory of its source, as a bottom level's does.
@@ -54,10 +57,12 @@ class TopLevelStructure final : public rhi::AccelerationStructure {
   const rhi::TopLevelDesc& created_from() const noexcept { return created_from_; }
   /// Reads the buffer, which is this device's. Throws Error for an instance that names no built bottom level.
   void build(const rhi::TopLevelDesc& desc);
-  /// Builds it anew, which is fast for instances. Throws Error when it was never built.
+  /// Builds it anew, which is fast for instances. Throws Error when it was never built, or with another count.
   void update(const rhi::TopLevelDesc& desc);
   /// Throws Error when nothing is built. To be called while no command list executes.
   std::shared_ptr<TopLevelStructure> compacted(std::string label) const;
+  /// A copy can be updated, but not be built.
+  bool is_compacted() const noexcept { return is_compacted_; }
   /// What a kernel traces; nullptr as long as it is not built.
   const kernel::TopLevel* view() const noexcept { return built_ != nullptr ? &view_of(*built_) : nullptr; }
 
@@ -65,6 +70,7 @@ class TopLevelStructure final : public rhi::AccelerationStructure {
   DeviceStateHandle device_;
   rhi::TopLevelDesc created_from_;
   std::shared_ptr<const BuiltTopLevel> built_;  ///< null as long as it is not built
+  bool is_compacted_ = false;
 };
 
 /// Throws Error unless every buffer that the desc names is this device's.

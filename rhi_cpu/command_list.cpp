@@ -39,6 +39,15 @@ auto created_from(const rhi::AccelerationStructureHandle& structure) {
   return created != nullptr ? created->created_from() : std::remove_cvref_t<decltype(created->created_from())>{};
 }
 
+template <typename Structure>
+std::shared_ptr<Structure> own_buildable(const rhi::AccelerationStructureHandle& structure, const DeviceState& device) {
+  std::shared_ptr<Structure> built = own<Structure>(structure, device, structure->label());
+  if (built->is_compacted())
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, built->label(),
+                     "a compacted copy has no room for a build, only for an update");
+  return built;
+}
+
 void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGroup>> groups,
          std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& workgroup_count,
          Workers& workers) {
@@ -125,14 +134,14 @@ void CommandList::build_bottom_level(const rhi::AccelerationStructureHandle& str
   rhi::validation::check(desc, device_->info);
   rhi::validation::check_build(*this, structure, created_from<BottomLevelStructure>(structure), desc);
   check_owner(desc, *device_);
-  record([built = own<BottomLevelStructure>(structure, *device_, structure->label()), desc] { built->build(desc); });
+  record([built = own_buildable<BottomLevelStructure>(structure, *device_), desc] { built->build(desc); });
 }
 
 void CommandList::build_top_level(const rhi::AccelerationStructureHandle& structure, const rhi::TopLevelDesc& desc) {
   rhi::validation::check(desc, device_->info);
   rhi::validation::check_build(*this, structure, created_from<TopLevelStructure>(structure), desc);
   check_owner(desc, *device_);
-  record([built = own<TopLevelStructure>(structure, *device_, structure->label()), desc] { built->build(desc); });
+  record([built = own_buildable<TopLevelStructure>(structure, *device_), desc] { built->build(desc); });
 }
 
 void CommandList::update_bottom_level(const rhi::AccelerationStructureHandle& structure,

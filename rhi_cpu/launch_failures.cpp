@@ -12,8 +12,8 @@ namespace {
 std::string sentence(LaunchFailure failure, std::uint32_t value, const rhi::ShaderTable& table,
                      std::span<const rhi::ShaderModuleHandle> shaders) {
   const auto beyond = [&](const char* kind, const rhi::ShaderRecords& records) {
-    return fmt::format("a ray asks for {} record {} of the shader table '{}', which has {}", kind, value, table.label(),
-                       records.records.size());
+    return fmt::format("a ray asks for {} record {} of the trace, beyond the {} of the shader table '{}'", kind, value,
+                       records.records.size(), table.label());
   };
   switch (failure) {
     case LaunchFailure::miss_record:
@@ -21,8 +21,8 @@ std::string sentence(LaunchFailure failure, std::uint32_t value, const rhi::Shad
     case LaunchFailure::hit_record:
       return beyond("hit", table.desc().hit);
     case LaunchFailure::callable_record:
-      return fmt::format("a shader calls callable record {} of the shader table '{}', which has {}", value,
-                         table.label(), table.desc().callable.records.size());
+      return fmt::format("a shader calls callable record {} of the trace, beyond the {} of the shader table '{}'",
+                         value, table.desc().callable.records.size(), table.label());
     case LaunchFailure::payload:
       return fmt::format("the shader '{}' was called with a payload or callable data smaller than its own",
                          shaders[value]->label());
@@ -30,7 +30,7 @@ std::string sentence(LaunchFailure failure, std::uint32_t value, const rhi::Shad
       return fmt::format("more rays are in flight than the pipeline's max_recursion_depth of {}",
                          table.desc().pipeline->desc().max_recursion_depth);
     case LaunchFailure::callable_depth:
-      return fmt::format("callable shaders call each other more than {} deep", max_callable_depth);
+      return fmt::format("callable shaders call each other more than {} deep", rhi::max_callable_depth);
   }
   return "unknown failure";
 }

@@ -15,11 +15,8 @@ enum class LaunchFailure : std::uint32_t {
   callable_record,  ///< likewise
   payload,          ///< smaller than that of the shader it was given to
   recursion,        ///< more rays in flight than the pipeline allows
-  callable_depth    ///< callable shaders that call callable shaders, too many deep
+  callable_depth    ///< more callable shaders in flight than rhi::max_callable_depth
 };
-
-/// Callable shaders may call each other this deep: Vulkan has no limit but its stack, and neither does C++.
-inline constexpr std::uint32_t max_callable_depth = 32;
 
 /// Collects what goes wrong in one trace_rays: shaders must not throw, for Embree's frames may lie between.
 /// Thread-safe, and the failure that is reported does not depend on the order in which invocations run.

@@ -40,7 +40,7 @@ struct Traversal {
   const RayLaunch& launch;
   const kernel::TopLevel& scene;
   const Ray& ray;
-  std::uint64_t first_record;  ///< of the instance with sbt_offset 0
+  std::uint64_t record_offset;  ///< traceRayEXT's sbtRecordOffset
   std::uint32_t record_stride;
   void* payload;
   std::uint32_t payload_size;
@@ -100,26 +100,36 @@ void run(const RayLaunch& launch, std::uint32_t shader, const std::byte* record_
   bound.call(call);
 }
 
+/// Counted from the first hit record of the trace.
 std::uint64_t record_index(const Traversal& traversal, const Hit& hit) {
-  return traversal.first_record + traversal.scene.instances[hit.instance_index].sbt_offset +
+  return traversal.record_offset + traversal.scene.instances[hit.instance_index].sbt_offset +
          std::uint64_t{hit.geometry_index} * traversal.record_stride;
 }
 
-/// The hit record, or null when the table has no such record.
-const HitRecord* find_record(const Traversal& traversal, const Hit& hit) {
-  const std::uint64_t index = record_index(traversal, hit);
-  const std::span<const HitRecord> records = traversal.launch.table.hit();
-  return index < records.size() ? &records[index] : nullptr;
+/// Record `index` of those that begin at `first`, or null where there is no such record. Where none begin there, every
+/// index names a record without shaders.
+template <typename Record>
+const Record* record_at(std::span<const Record> records, std::uint32_t first, std::uint64_t index) {
+  static constexpr Record nothing;
+  if (first >= records.size()) return &nothing;
+  return index < records.size() - first ? &records[first + index] : nullptr;
 }
 
-/// The hit record of a hit whose shader is to run: its absence is a mistake.
-const HitRecord* use_record(const Traversal& traversal, const Hit& hit) {
-  const HitRecord* record = find_record(traversal, hit);
-  if (record == nullptr) {
-    const std::uint64_t index = std::min<std::uint64_t>(record_index(traversal, hit), ~std::uint32_t{0});
-    traversal.launch.failures.note(LaunchFailure::hit_record, static_cast<std::uint32_t>(index));
-  }
+/// As record_at; that there is no such record is noted.
+template <typename Record>
+const Record* use_record(const RayLaunch& launch, std::span<const Record> records, std::uint32_t first,
+                         std::uint64_t index, LaunchFailure failure) {
+  const Record* record = record_at(records, first, index);
+  if (record == nullptr)
+    launch.failures.note(failure, static_cast<std::uint32_t>(std::min<std::uint64_t>(index, ~std::uint32_t{0})));
   return record;
+}
+
+/// The record of a hit whose shader is to run.
+const HitRecord* use_hit_record(const Traversal& traversal, const Hit& hit) {
+  const RayLaunch& launch = traversal.launch;
+  return use_record(launch, launch.table.hit(), launch.first.hit, record_index(traversal, hit),
+                    LaunchFailure::hit_record);
 }
 
 /// @param hit with the t at which it is hit
@@ -137,7 +147,11 @@ HitDecision run_any_hit(const Traversal& traversal, const HitRecord& record, con
 
 CandidateDecision visit_triangle(void* context, const Hit& candidate) {
   const Traversal& traversal = *static_cast<const Traversal*>(context);
-  const HitRecord* record = candidate.opaque ? find_record(traversal, candidate) : use_record(traversal, candidate);
+  const RayLaunch& launch = traversal.launch;
+  // What an opaque triangle's record says of shaders is only asked when it is the closest.
+  const HitRecord* record = candidate.opaque
+                                ? record_at(launch.table.hit(), launch.first.hit, record_index(traversal, candidate))
+                                : use_hit_record(traversal, candidate);
   if (record == nullptr) return CandidateDecision::commit;
   if (record->intersection != rhi::no_shader) return CandidateDecision::ignore;
   if (candidate.opaque || record->any_hit == rhi::no_shader) return CandidateDecision::commit;
@@ -155,7 +169,7 @@ CandidateDecision visit_triangle(void* context, const Hit& candidate) {
 
 CandidateDecision visit_box(void* context, Hit& candidate, float t_max) {
   Traversal& traversal = *static_cast<Traversal*>(context);
-  const HitRecord* record = use_record(traversal, candidate);
+  const HitRecord* record = use_hit_record(traversal, candidate);
   if (record == nullptr || record->intersection == rhi::no_shader) return CandidateDecision::ignore;
 
   BoxCandidate box{.traversal = traversal, .record = *record, .hit = candidate};
@@ -206,7 +220,7 @@ bool meets_any_hit(const kernel::TopLevel& scene, std::uint32_t flags) {
 
 void run_closest_hit(Traversal& traversal, const Hit& hit) {
   if ((traversal.ray.flags & kernel::ray_flag_skip_closest_hit_shader) != 0) return;
-  const HitRecord* record = use_record(traversal, hit);
+  const HitRecord* record = use_hit_record(traversal, hit);
   if (record == nullptr || record->closest_hit == rhi::no_shader) return;
   HitAttributes attributes = hit.is_box ? traversal.box_attributes : triangle_attributes(hit);
   ShaderCall call = call_of_ray(traversal.caller, traversal.ray, traversal.payload, traversal.payload_size);
@@ -220,17 +234,12 @@ void run_closest_hit(Traversal& traversal, const Hit& hit) {
 
 void run_miss(const ShaderCall& caller, const RayLaunch& launch, const Ray& ray, std::uint32_t index, void* payload,
               std::uint32_t payload_size) {
-  const std::uint64_t position = std::uint64_t{launch.first.miss} + index;
-  if (position >= launch.table.miss().size()) {
-    const std::uint64_t noted = std::min<std::uint64_t>(position, ~std::uint32_t{0});
-    launch.failures.note(LaunchFailure::miss_record, static_cast<std::uint32_t>(noted));
-    return;
-  }
-  const GeneralRecord& record = launch.table.miss()[position];
-  if (record.shader == rhi::no_shader) return;
+  const GeneralRecord* record =
+      use_record(launch, launch.table.miss(), launch.first.miss, index, LaunchFailure::miss_record);
+  if (record == nullptr || record->shader == rhi::no_shader) return;
   ShaderCall call = call_of_ray(caller, ray, payload, payload_size);
   call.t = ray.t_max;
-  run(launch, record.shader, record.data, call);
+  run(launch, record->shader, record->data, call);
 }
 
 enum class Outcome { miss, hit, hit_nobody_asks_for };
@@ -272,7 +281,7 @@ void trace_ray(ShaderCall& caller, const kernel::TopLevel* scene, const Ray& unm
                         .launch = launch,
                         .scene = *scene,
                         .ray = ray,
-                        .first_record = std::uint64_t{launch.first.hit} + (sbt_record_offset & sbt_bits),
+                        .record_offset = sbt_record_offset & sbt_bits,
                         .record_stride = sbt_record_stride & sbt_bits,
                         .payload = payload,
                         .payload_size = payload_size,
@@ -289,15 +298,10 @@ void trace_ray(ShaderCall& caller, const kernel::TopLevel* scene, const Ray& unm
 void execute_callable(ShaderCall& caller, std::uint32_t index, void* data, std::uint32_t data_size) {
   Invocation& invocation = invocation_of(caller);
   const RayLaunch& launch = invocation.launch;
-  const std::uint64_t position = std::uint64_t{launch.first.callable} + index;
-  if (position >= launch.table.callable().size()) {
-    const std::uint64_t noted = std::min<std::uint64_t>(position, ~std::uint32_t{0});
-    launch.failures.note(LaunchFailure::callable_record, static_cast<std::uint32_t>(noted));
-    return;
-  }
-  const GeneralRecord& record = launch.table.callable()[position];
-  if (record.shader == rhi::no_shader) return;
-  if (invocation.callable_depth == max_callable_depth) {
+  const GeneralRecord* record =
+      use_record(launch, launch.table.callable(), launch.first.callable, index, LaunchFailure::callable_record);
+  if (record == nullptr || record->shader == rhi::no_shader) return;
+  if (invocation.callable_depth == rhi::max_callable_depth) {
     launch.failures.note(LaunchFailure::callable_depth, 0);
     return;
   }
@@ -305,7 +309,7 @@ void execute_callable(ShaderCall& caller, std::uint32_t index, void* data, std::
   call.payload = data;
   call.payload_size = data_size;
   ++invocation.callable_depth;
-  run(launch, record.shader, record.data, call);
+  run(launch, record->shader, record->data, call);
   --invocation.callable_depth;
 }
 

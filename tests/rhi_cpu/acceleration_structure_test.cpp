@@ -201,15 +201,15 @@ TEST_CASE("What is not built cannot be updated or compacted") {
   const rhi::BottomLevelDesc desc = probe.triangle(7, flags);
   const auto bottom = probe.device().create_bottom_level(desc);
   CHECK(message_of([&] { probe.submit([&](rhi::CommandList& list) { list.update_bottom_level(bottom, desc); }); }) ==
-        "triangle: it is updated before it is built");
+        "triangle: it is updated, but was never built");
   CHECK(message_of([&] { probe.device().create_compacted(bottom, "copy"); }) ==
-        "triangle: it is compacted before it is built");
+        "copy: the structure 'triangle', to be compacted, was never built");
   const rhi::TopLevelDesc top_desc{.instances = {}, .instance_count = 0, .flags = flags, .label = "scene"};
   const auto top = probe.device().create_top_level(top_desc);
   CHECK(message_of([&] { probe.submit([&](rhi::CommandList& list) { list.update_top_level(top, top_desc); }); }) ==
-        "scene: it is updated before it is built");
+        "scene: it is updated, but was never built");
   CHECK(message_of([&] { probe.device().create_compacted(top, "copy"); }) ==
-        "scene: it is compacted before it is built");
+        "copy: the structure 'scene', to be compacted, was never built");
 }
 
 TEST_CASE("A compacted copy outlives its source, and neither changes when the other is updated") {
@@ -243,6 +243,24 @@ TEST_CASE("A compacted copy outlives its source, and neither changes when the ot
     top = nullptr;
     CHECK(probe.distance(top_copy) == 8);
   }
+}
+
+TEST_CASE("A compacted copy is not built again, and a top level is updated with the instances it was built with") {
+  constexpr BuildFlags flags = BuildFlags::allow_update | BuildFlags::allow_compaction;
+  const Probe probe("cpu");
+  const rhi::BottomLevelDesc desc = probe.triangle(7, flags);
+  const auto bottom = probe.build(desc);
+  const auto copy = probe.device().create_compacted(bottom, "copy");
+  CHECK(message_of([&] { probe.submit([&](rhi::CommandList& list) { list.build_bottom_level(copy, desc); }); }) ==
+        "copy: a compacted copy has no room for a build, only for an update");
+  rhi::TopLevelDesc top_desc = probe.instance(*bottom, flags);
+  const auto top = probe.build(top_desc);
+  const auto top_copy = probe.device().create_compacted(top, "copy");
+  CHECK(message_of([&] { probe.submit([&](rhi::CommandList& list) { list.build_top_level(top_copy, top_desc); }); }) ==
+        "copy: a compacted copy has no room for a build, only for an update");
+  top_desc.instance_count = 0;
+  CHECK(message_of([&] { probe.submit([&](rhi::CommandList& list) { list.update_top_level(top, top_desc); }); }) ==
+        "scene: an update with 0 instances of a structure built with 1");
 }
 
 TEST_CASE("Compaction wants its flag, and a structure of this device") {

@@ -234,17 +234,42 @@ TEST_CASE("A record that the table does not have ends the submission in an error
   const ScriptedPipeline pipeline(
       {{.stage = ShaderStage::ray_generation, .run = [&](ShaderCall& call) { script(call); }},
        {.stage = ShaderStage::miss, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }},
-       {.stage = ShaderStage::closest_hit, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }}},
+       {.stage = ShaderStage::closest_hit, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }},
+       {.stage = ShaderStage::callable, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }}},
       {{.closest_hit = 2}});
   script = [&](ShaderCall& call) { call.functions->trace_ray(call, &scene, ray_with(0), 3, 0, 0, nullptr, 0); };
   CHECK(message_of([&] {
           pipeline.trace({0, 0, 0}, {8, 8, 1});
-        }) == "scripted: a ray asks for hit record 3 of the shader table 'table', which has 3");
+        }) == "scripted: a ray asks for hit record 3 of the trace, beyond the 3 of the shader table 'table'");
   script = [&](ShaderCall& call) { call.functions->trace_ray(call, nullptr, ray_with(0), 0, 0, 1, nullptr, 0); };
   CHECK(contains(message_of([&] { pipeline.trace({0}); }), "miss record 1"));
   // The lowest index is named, whichever invocation comes first.
   script = [&](ShaderCall& call) { call.functions->execute_callable(call, 40 - call.launch_id[0], nullptr, 0); };
   CHECK(contains(message_of([&] { pipeline.trace({0}, {40, 1, 1}); }), "callable record 1 "));
+}
+
+TEST_CASE("A kind without records, and a first record behind the last, name no shader") {
+  const ScriptedScene scene({triangle_at(1, true)});
+  const ScriptedPipeline pipeline({{.stage = ShaderStage::ray_generation,
+                                    .run =
+                                        [&](ShaderCall& call) {
+                                          call.functions->trace_ray(call, &scene, ray_with(0), 3, 0, 7, nullptr, 0);
+                                          call.functions->trace_ray(call, nullptr, ray_with(0), 0, 0, 7, nullptr, 0);
+                                          call.functions->execute_callable(call, 5, nullptr, 0);
+                                        }},
+                                   {.stage = ShaderStage::miss, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }},
+                                   {.stage = ShaderStage::closest_hit, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }},
+                                   {.stage = ShaderStage::callable, .run = [](ShaderCall&) { FAIL_CHECK("runs"); }}},
+                                  {{.closest_hit = 2}});
+  rhi::ShaderTableDesc table = pipeline.table_desc({0, 0});
+  rhi::TraceRaysDesc behind;
+  behind.table = pipeline.device().create_shader_table(table);
+  behind.first_miss_record = 1;
+  behind.first_hit_record = 2;
+  behind.first_callable_record = 1;
+  CHECK_NOTHROW(pipeline.submit(behind));
+  table.miss = table.hit = table.callable = {};
+  CHECK_NOTHROW(pipeline.trace_table(pipeline.device().create_shader_table(table)));
 }
 
 TEST_CASE("A shader whose payload is larger than the one it is given does not run, and is named") {
@@ -317,7 +342,7 @@ TEST_CASE("Callable shaders read and write their caller's data, call each other,
   pipeline.trace({});
   CHECK(calls == 5);
   wanted = ~0u;
-  CHECK(contains(message_of([&] { pipeline.trace({}); }), "32 deep"));
+  CHECK(contains(message_of([&] { pipeline.trace({}); }), "8 deep"));
 }
 
 }  // namespace tandem::cpu
