@@ -48,18 +48,19 @@ void bounds_of_box(const RTCBoundsFunctionArguments* arguments) {
   }
 }
 
-GeometryPointer new_geometry(const EmbreeDevice& device, RTCGeometryType type, bool refits, std::string_view label) {
+GeometryPointer new_geometry(const EmbreeDevice& device, RTCGeometryType type, RTCBuildQuality quality,
+                             std::string_view label) {
   GeometryPointer geometry(rtcNewGeometry(device.get(), type));
   device.check(label);
-  if (refits) rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_REFIT);
+  rtcSetGeometryBuildQuality(geometry.get(), quality);
   // A bottom level that is traced without its instance level has had its mask tested already.
   rtcSetGeometryMask(geometry.get(), 0xFFFFFFFFu);
   return geometry;
 }
 
-GeometryPointer make_triangles(const EmbreeDevice& device, const TriangleMesh& mesh, bool refits,
+GeometryPointer make_triangles(const EmbreeDevice& device, const TriangleMesh& mesh, RTCBuildQuality quality,
                                std::string_view label) {
-  GeometryPointer geometry = new_geometry(device, RTC_GEOMETRY_TYPE_TRIANGLE, refits, label);
+  GeometryPointer geometry = new_geometry(device, RTC_GEOMETRY_TYPE_TRIANGLE, quality, label);
   auto* positions = static_cast<Position*>(rtcSetNewGeometryBuffer(
       geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Position), mesh.positions.size()));
   // Embree leaves out triangles whose indices are out of range, and numbers the others as if they were there.
@@ -71,8 +72,8 @@ GeometryPointer make_triangles(const EmbreeDevice& device, const TriangleMesh& m
   return geometry;
 }
 
-GeometryPointer make_boxes(const EmbreeDevice& device, BoxSet& set, bool refits, std::string_view label) {
-  GeometryPointer geometry = new_geometry(device, RTC_GEOMETRY_TYPE_USER, refits, label);
+GeometryPointer make_boxes(const EmbreeDevice& device, BoxSet& set, RTCBuildQuality quality, std::string_view label) {
+  GeometryPointer geometry = new_geometry(device, RTC_GEOMETRY_TYPE_USER, quality, label);
   rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(set.boxes.size()));
   rtcSetGeometryUserData(geometry.get(), &set);
   rtcSetGeometryBoundsFunction(geometry.get(), &bounds_of_box, nullptr);
@@ -86,9 +87,9 @@ void attach(const EmbreeDevice& device, BottomLevelScene& level, std::size_t num
   GeometryPointer geometry;
   if (auto* boxes = std::get_if<BoxSet>(&mesh)) {
     level.box_sets[number] = std::make_unique<BoxSet>(std::move(*boxes));
-    geometry = make_boxes(device, *level.box_sets[number], level.refits, label);
+    geometry = make_boxes(device, *level.box_sets[number], level.quality, label);
   } else {
-    geometry = make_triangles(device, std::get<TriangleMesh>(mesh), level.refits, label);
+    geometry = make_triangles(device, std::get<TriangleMesh>(mesh), level.quality, label);
   }
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometryByID(level.scene.get(), geometry.get(), static_cast<unsigned>(number));
@@ -139,8 +140,8 @@ BottomLevel BottomLevel::build(const EmbreeDevice& device, std::span<const Geome
                                rhi::BuildFlags flags, std::string_view label) {
   const std::int64_t allocated_before = device.allocated_bytes();
   auto result = std::make_shared<BottomLevelScene>();
-  result->refits = rhi::has(flags, rhi::BuildFlags::allow_update);
-  result->scene = new_scene(device, flags, result->refits, label);
+  result->quality = quality_of(flags);
+  result->scene = new_scene(device, result->quality, label);
   result->holds_boxes = !geometries.empty() && std::holds_alternative<BoxInput>(geometries.front());
   result->box_sets.resize(geometries.size());
   for (std::size_t i = 0; i < geometries.size(); ++i) {
@@ -166,7 +167,7 @@ void BottomLevel::update(const EmbreeDevice& device, std::span<const GeometryInp
                          std::string_view label) {
   BottomLevelScene& level = *scene_;
   const auto reject = [&](const std::string& why) { throw rhi::Error(rhi::ErrorCode::invalid_argument, label, why); };
-  if (!level.refits) reject("it was built without BuildFlags::allow_update");
+  if (level.quality != RTC_BUILD_QUALITY_REFIT) reject("it was built without BuildFlags::allow_update");
   if (geometries.size() != level.flags.size())
     reject(fmt::format("it was built from {} geometries, the update has {}", level.flags.size(), geometries.size()));
   // All are read before the first is changed, so that an error leaves everything as it was.

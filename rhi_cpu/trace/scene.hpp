@@ -14,9 +14,12 @@
 /// What BottomLevel and TopLevel own, as the trace functions see it.
 namespace tandem::cpu {
 
-/// An empty scene of the quality that `flags` ask for. No quality splits primitives, which would offer them twice.
-/// @param refits its geometries will be moved
-ScenePointer new_scene(const EmbreeDevice& device, rhi::BuildFlags flags, bool refits, std::string_view label);
+/// The quality of geometries that `flags` ask for: RTC_BUILD_QUALITY_REFIT when they will be moved. None splits
+/// primitives, which would offer them twice.
+RTCBuildQuality quality_of(rhi::BuildFlags flags);
+
+/// An empty scene for geometries of a quality.
+ScenePointer new_scene(const EmbreeDevice& device, RTCBuildQuality quality, std::string_view label);
 
 struct GeometryCounts {
   std::size_t primitives = 0;
@@ -30,7 +33,7 @@ struct BottomLevelScene {
   std::vector<std::unique_ptr<BoxSet>> box_sets;  ///< of each geometry, where Embree's callbacks find them
   bool holds_boxes = false;                       ///< it holds boxes only, else triangles only
   bool all_opaque = true;
-  bool refits = false;      ///< built to be updated
+  RTCBuildQuality quality = RTC_BUILD_QUALITY_MEDIUM;
   std::uint64_t bytes = 0;  ///< of the whole, Embree's memory included
 };
 
