@@ -66,7 +66,8 @@ class RayLine {
       first = std::max(first, enter - (std::abs(enter) * axis.relative_error + axis.absolute_error));
       last = std::min(last, exit + (std::abs(exit) * axis.relative_error + axis.absolute_error));
     }
-    return first <= last ? first : infinity;
+    if (first <= last) return first;
+    return infinity;
   }
 
  private:

@@ -24,8 +24,8 @@ ExactNumber::ExactNumber(double value) : negative_(value < 0) {
   exponent -= mantissa_bits;
   exponent_ = floor_divide(exponent, limb_bits);
   const DoubleLimb aligned = DoubleLimb{mantissa} << (exponent - exponent_ * limb_bits);
-  limbs_[0] = static_cast<Limb>(aligned);
-  limbs_[1] = static_cast<Limb>(aligned >> limb_bits);
+  at(0) = static_cast<Limb>(aligned);
+  at(1) = static_cast<Limb>(aligned >> limb_bits);
   size_ = 2;
   trim();
 }
@@ -36,7 +36,7 @@ int ExactNumber::checked_size(int size) {
 }
 
 void ExactNumber::trim() {
-  while (size_ > 0 && limbs_[static_cast<std::size_t>(size_ - 1)] == 0) --size_;
+  while (size_ > 0 && at(size_ - 1) == 0) --size_;
   const auto used = limbs_.begin() + size_;
   const auto first = std::find_if(limbs_.begin(), used, [](Limb limb) { return limb != 0; });
   const auto zeros = static_cast<int>(first - limbs_.begin());
@@ -47,7 +47,7 @@ void ExactNumber::trim() {
 
 ExactNumber::Limb ExactNumber::limb_at(int position) const {
   const int index = position - exponent_;
-  return index >= 0 && index < size_ ? limbs_[static_cast<std::size_t>(index)] : 0;
+  return index >= 0 && index < size_ ? at(index) : 0;
 }
 
 int ExactNumber::compare_magnitudes(const ExactNumber& a, const ExactNumber& b) {
@@ -81,7 +81,7 @@ ExactNumber operator+(const ExactNumber& a, const ExactNumber& b) {
     const DoubleLimb x = large.limb_at(result.exponent_ + i);
     const DoubleLimb y = DoubleLimb{small.limb_at(result.exponent_ + i)} + carry;
     const DoubleLimb limb = subtract ? x - y : x + y;
-    result.limbs_[static_cast<std::size_t>(i)] = static_cast<ExactNumber::Limb>(limb);
+    result.at(i) = static_cast<ExactNumber::Limb>(limb);
     carry = static_cast<ExactNumber::Limb>(limb >> ExactNumber::limb_bits) & 1;
   }
   result.trim();
@@ -97,13 +97,12 @@ ExactNumber operator*(const ExactNumber& a, const ExactNumber& b) {
   for (int i = 0; i < a.size_; ++i) {
     ExactNumber::Limb carry = 0;
     for (int j = 0; j < b.size_; ++j) {
-      ExactNumber::Limb& limb = result.limbs_[static_cast<std::size_t>(i + j)];
-      const DoubleLimb sum =
-          DoubleLimb{a.limbs_[static_cast<std::size_t>(i)]} * b.limbs_[static_cast<std::size_t>(j)] + limb + carry;
+      ExactNumber::Limb& limb = result.at(i + j);
+      const DoubleLimb sum = DoubleLimb{a.at(i)} * b.at(j) + limb + carry;
       limb = static_cast<ExactNumber::Limb>(sum);
       carry = static_cast<ExactNumber::Limb>(sum >> ExactNumber::limb_bits);
     }
-    result.limbs_[static_cast<std::size_t>(i + b.size_)] = carry;
+    result.at(i + b.size_) = carry;
   }
   result.trim();
   return result;

@@ -39,6 +39,9 @@ class ExactNumber {
   Limb limb_at(int position) const;
   void trim();
 
+  Limb& at(int index) { return limbs_[static_cast<std::size_t>(index)]; }
+  Limb at(int index) const { return limbs_[static_cast<std::size_t>(index)]; }
+
   std::array<Limb, capacity> limbs_{};  ///< from the lowest; neither the first nor the last used one is zero
   int size_ = 0;                        ///< limbs in use
   int exponent_ = 0;                    ///< the first limb counts 2^(64 * exponent_)
