@@ -97,6 +97,23 @@ TEST_CASE("capabilities, models, modes, storage classes, decorations and built-i
                 "built-in FragCoord is");
 }
 
+TEST_CASE("built-ins of other shader stages are named") {
+  const auto refused = [](const std::string& model, const std::string& built_in, const std::string& number) {
+    std::string text = module("OpCapability RayTracingKHR\nOpExtension \"SPV_KHR_ray_tracing\"\n",
+                              "OpDecorate %built_in BuiltIn " + built_in + "\n",
+                              "%int = OpTypeInt 32 1\n%pointer = OpTypePointer Input %int\n"
+                              "%built_in = OpVariable %pointer Input\n",
+                              "%value = OpLoad %int %built_in\n", model);
+    text.replace(text.find("\"main\""), 6, "\"main\" %built_in");
+    check_refused(assemble(text), ErrorCode::unsupported, "built-in " + number);
+  };
+  refused("RayGenerationKHR", "PrimitiveId", "7 in this shader stage is not supported");
+  refused("MissKHR", "InstanceCustomIndexKHR", "5327 in this shader stage is not supported");
+  refused("CallableKHR", "IncomingRayFlagsKHR", "5351 in this shader stage is not supported");
+  refused("IntersectionKHR", "LocalInvocationIndex", "29 in this shader stage is not supported");
+  refused("GLCompute", "PrimitiveId", "7 is not supported");
+}
+
 TEST_CASE("instructions and extended instructions are named") {
   check_refused(assemble(module("", "", "", "%d = OpDPdx %float %one\n")), ErrorCode::unsupported, "OpDPdx is");
   check_refused(assemble(module("", "", "", "%i = OpExtInst %float %glsl InterpolateAtCentroid %one\n")),
