@@ -322,3 +322,56 @@ layout(push_constant) uniform Constants { uint base; };
     CHECK(test::contents<std::uint32_t>(*device, results, 4) == Values{55, 56, 57, 58});
   }
 }
+
+TEST_CASE("vulkan: what a trace writes is built from, and what is built is traced, within one list") {
+  const test::SilentDevice device;
+  const std::string write_vertices = R"(
+layout(set = 0, binding = 0) writeonly buffer Vertices { float vertices[]; };
+void main() {
+  const float corners[9] = float[](0, 0, 0, 1, 0, 0, 0, 1, 0);
+  vertices[gl_LaunchIDEXT.x] = corners[gl_LaunchIDEXT.x] + (gl_LaunchIDEXT.x % 3u == 0u ? 2.0 : 0.0);
+})";
+  rhi::RayTracingPipelineDesc desc;
+  desc.ray_generation = {ray_shader(*device, ShaderStage::ray_generation, write_vertices, "vertices")};
+  desc.max_recursion_depth = 0;
+  desc.label = "writer";
+  rhi::ShaderTableDesc writer;
+  writer.pipeline = device->create_ray_tracing_pipeline(desc);
+  writer.ray_generation = records({{.shader = 0, .data = {}}});
+  writer.label = "writer";
+  rhi::ShaderTableDesc tracer;
+  tracer.pipeline = device->create_ray_tracing_pipeline(simple_pipeline(*device));
+  tracer.ray_generation = records({{.shader = 0, .data = {}}});
+  tracer.miss = records({{.shader = 0, .data = bytes_of(100)}});
+  tracer.hit = records({{.shader = 0, .data = bytes_of(200)}});
+  tracer.label = "tracer";
+
+  const rhi::TriangleGeometry triangle = test::triangles_of(*device, std::vector<float>(9));
+  const rhi::BottomLevelDesc bottom_level_desc = {.geometries = {triangle}, .label = "bottom level"};
+  const rhi::AccelerationStructureHandle bottom_level = device->create_bottom_level(bottom_level_desc);
+  rhi::TopLevelDesc top_level_desc;
+  top_level_desc.instances.buffer =
+      test::buffer_of(*device, std::vector<rhi::InstanceDesc>{rhi::make_instance(*bottom_level)}, "instances");
+  top_level_desc.instance_count = 1;
+  const rhi::AccelerationStructureHandle top_level = device->create_top_level(top_level_desc);
+  const rhi::BufferHandle results = test::buffer_of(*device, Values(3), "results");
+
+  const rhi::CommandListHandle list = device->create_command_list("all");
+  rhi::TraceRaysDesc trace;
+  trace.table = device->create_shader_table(writer);
+  trace.bind_groups = {device->create_bind_group(
+      {.pipeline = writer.pipeline, .entries = {{.binding = 0, .resource = triangle.vertices}}, .label = "vertices"})};
+  trace.size = {9, 1, 1};
+  list->trace_rays(trace);
+  list->build_bottom_level(bottom_level, bottom_level_desc);
+  list->build_top_level(top_level, top_level_desc);
+  trace.table = device->create_shader_table(tracer);
+  trace.bind_groups = {device->create_bind_group(
+      {.pipeline = tracer.pipeline,
+       .entries = {{.binding = 0, .resource = top_level}, {.binding = 1, .resource = rhi::BufferRange{results}}},
+       .label = "scene and results"})};
+  trace.size = {3, 1, 1};
+  list->trace_rays(trace);
+  device->submit(list);
+  CHECK(test::contents<std::uint32_t>(*device, results, 3) == Values{101, 202, 101});
+}
