@@ -1,7 +1,6 @@
 #include "rhi_cpu/pipeline_functions.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "rhi_cpu/kernel/trace.hpp"
@@ -264,18 +263,15 @@ Outcome find_hit(Traversal& traversal, Hit& hit) {
   return scene.functions->closest(scene, ray, hit) ? Outcome::hit : Outcome::miss;
 }
 
-void trace_ray(ShaderCall& caller, const kernel::TopLevel* scene, const Ray& unmasked, std::uint32_t sbt_record_offset,
+void trace_ray(ShaderCall& caller, const kernel::TopLevel* scene, const Ray& ray, std::uint32_t sbt_record_offset,
                std::uint32_t sbt_record_stride, std::uint32_t miss_index, void* payload, std::uint32_t payload_size) {
   const RayLaunch& launch = invocation_of(caller).launch;
   if (caller.depth >= launch.max_recursion_depth) {
     launch.failures.note(LaunchFailure::recursion, 0);
     return;
   }
-  auto vectors = std::bit_cast<kernel::RayVectors>(unmasked);
-  vectors.mask &= mask_bits;
-  const Ray ray = std::bit_cast<Ray>(vectors);
   // Written so that a NaN at either end meets nothing too.
-  const bool meets_anything = scene != nullptr && ray.mask != 0 && ray.t_min < ray.t_max;
+  const bool meets_anything = scene != nullptr && (ray.mask & mask_bits) != 0 && ray.t_min < ray.t_max;
   if (meets_anything) {
     Traversal traversal{.caller = caller,
                         .launch = launch,
