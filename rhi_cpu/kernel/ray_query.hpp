@@ -110,6 +110,7 @@ TANDEM_RAY_QUERY_INLINE void commit_closest(rayQueryEXT& query, const Ray& ray) 
     query.has_committed = query.committed_is_unknown = scene.functions->occluded(scene, ray);
   } else if (scene.functions->closest(scene, ray, hit)) {
     query.committed = hit;
+    query.committed.is_box = false;  // for the compiler, which then need not look
     query.has_committed = true;
   }
 }
