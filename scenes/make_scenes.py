@@ -1,15 +1,20 @@
 #!/usr/bin/env python3
-"""Writes cornell_box.obj and cornell_spheres.obj (with their .mtl) beside this script.
+"""Writes cornell_box.obj, cornell_spheres.obj and foliage.obj (with their .mtl and .png) beside this script.
 
-Room, light and blocks are the measured data of the Cornell Program of Computer Graphics,
+Cornell box: room, light and blocks are the measured data of the Cornell Program of Computer Graphics,
 https://www.graphics.cornell.edu/online/box/data.html (1998), in millimetres. The reflectances and the emission are the
 RGB values in which renderers usually express its measured spectra (for example McGuire's Computer Graphics Archive).
 
 So that no two faces coincide and no edge ends inside another one, the ceiling has a hole where the light is, the room
 shares its corners, and the blocks have no bottom. The faces of the room look inwards, those of the blocks outwards.
+
+Foliage: our own, in metres. Leaves and a fence are cards whose shapes are textures; a sail lets part of the light pass.
 """
 import math
 import pathlib
+import random
+import struct
+import zlib
 
 SOURCE = [
     "# The Cornell box, from the measured data at https://www.graphics.cornell.edu/online/box/data.html",
@@ -146,12 +151,100 @@ def sphere_lines():
     return lines
 
 
+FOLIAGE_MATERIALS = """\
+# Written by scenes/make_scenes.py
+newmtl ground
+Kd 0.5 0.45 0.4
+
+newmtl leaf
+Kd 0.12 0.4 0.08
+map_d leaf.png
+
+newmtl fence
+Kd 0.3 0.2 0.12
+map_d fence.png
+
+newmtl sail
+Kd 0.8 0.25 0.15
+d 0.6
+
+newmtl lamp
+Kd 0 0 0
+Ke 12 11 9
+"""
+
+
+def card(material, centre, u, v, repeats=(1, 1)):
+    """A parallelogram around a centre with the half sides u and v, whose texture repeats."""
+    corners = [tuple(c + i * a + j * b for c, a, b in zip(centre, u, v)) for i, j in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    lines = [f"usemtl {material}"]
+    lines += ["v " + " ".join(number(x, 4) for x in corner) for corner in corners]
+    lines += [f"vt {s} {t}" for s, t in ((0, 0), (repeats[0], 0), repeats, (0, repeats[1]))]
+    return lines + ["f -4/-4 -3/-3 -2/-2 -1/-1"]
+
+
+def foliage_lines():
+    source = random.Random(7)
+    lines = ["# Written by scenes/make_scenes.py. Metres, y upwards.", "mtllib foliage.mtl"]
+    lines += ["o ground"] + card("ground", (0, 0, 0), (4, 0, 0), (0, 0, -4))
+    lines += ["o wall"] + card("ground", (0, 1.9, -3), (4, 0, 0), (0, 1.85, 0))
+    lines += ["o lamp"] + card("lamp", (0.6, 3.4, 0.4), (0.4, 0, 0), (0, 0, 0.4))
+    lines += ["o fence"] + card("fence", (-0.9, 0.61, -1), (1.6, 0, 0.3), (0, 0.6, 0), (16, 6))
+    lines += ["o sail"] + card("sail", (1.7, 1.5, -1.6), (1, 0, 0.5), (0.2, 0.9, 0.3))
+    lines.append("o leaves")
+    for _ in range(60):
+        centre = (source.uniform(-1, 1.4), source.uniform(0.9, 2.4), source.uniform(-0.8, 1))
+        along = unit([source.gauss(0, 1) for _ in range(3)])
+        other = unit([source.gauss(0, 1) for _ in range(3)])
+        dot = sum(a * b for a, b in zip(along, other))
+        across = unit([b - dot * a for a, b in zip(along, other)])
+        lines += card("leaf", centre, [0.14 * x for x in across], [0.26 * x for x in along])
+    return lines
+
+
+def leaf_texels(side):
+    """Opaque inside two arcs that meet at the ends of the card, with a soft edge and a stalk."""
+    rows = []
+    for row in range(side):
+        y = 1 - (2 * row + 1) / side
+        row_texels = []
+        for column in range(side):
+            x = abs((2 * column + 1) / side - 1)
+            edge = 0.9 * (1 - y * y) ** 0.75 * (0.8 - 0.25 * y) - x
+            opacity = min(max(0.5 + edge * side / 4, 0), 1)
+            if y < -0.6 and x < 0.06:
+                opacity = 1
+            row_texels.append(round(255 * opacity))
+        rows.append(row_texels)
+    return rows
+
+
+def fence_texels(side):
+    """Slats with a rail at the foot of each repetition."""
+    return [[255 if column < side * 5 // 8 or row >= side * 7 // 8 else 0 for column in range(side)]
+            for row in range(side)]
+
+
+def png(rows, with_color):
+    """An 8-bit image: the texels as grey, or as the alpha of a white one."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 4 if with_color else 0, 0, 0, 0)
+    data = b"".join(b"\0" + b"".join(bytes([255, t]) if with_color else bytes([t]) for t in row) for row in rows)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(data, 9)) + chunk(b"IEND", b"")
+
+
 def main():
     folder = pathlib.Path(__file__).parent
     (folder / "cornell_box.mtl").write_text(ROOM_MATERIALS)
     (folder / "cornell_box.obj").write_text("\n".join(room_lines("cornell_box.mtl") + block_lines()) + "\n")
     (folder / "cornell_spheres.mtl").write_text(ROOM_MATERIALS + SPHERE_MATERIALS)
     (folder / "cornell_spheres.obj").write_text("\n".join(room_lines("cornell_spheres.mtl") + sphere_lines()) + "\n")
+    (folder / "foliage.mtl").write_text(FOLIAGE_MATERIALS)
+    (folder / "foliage.obj").write_text("\n".join(foliage_lines()) + "\n")
+    (folder / "leaf.png").write_bytes(png(leaf_texels(64), with_color=True))
+    (folder / "fence.png").write_bytes(png(fence_texels(16), with_color=False))
 
 
 if __name__ == "__main__":
