@@ -97,6 +97,7 @@ std::string texture_file(Reading& reading, const Statement& statement) {
     if (!takes_numbers) take_word(rest);
     double value = 0;
     for (std::string_view after = rest; takes_numbers && parse_number(take_word(after), value);) rest = after;
+    rest.remove_prefix(std::min(rest.find_first_not_of(" \t"), rest.size()));
   }
   if (rest.empty()) throw reading.text->error(fmt::format("{} names no file", statement.keyword));
   return std::string(rest);

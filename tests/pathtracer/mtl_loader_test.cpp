@@ -78,6 +78,38 @@ TEST_CASE("A dielectric without an index of refraction is window glass, with a w
   CHECK(contains(error_of("newmtl m\nillum 4\nNi -1\n"), "test.mtl:3: "));
 }
 
+TEST_CASE("d is opacity, Tr its complement, and d counts where both are given") {
+  const auto opacity = [](const std::string& text) {
+    return load("newmtl m\n" + text).materials.at(0).material.opacity;
+  };
+  CHECK(opacity("") == 1);
+  CHECK(opacity("d 0.25\n") == 0.25f);
+  CHECK(opacity("d -halo 0.25\n") == 0.25f);
+  CHECK(opacity("Tr 0.25\n") == 0.75f);
+  CHECK(opacity("Tr 1\nd 1\n") == 1);
+  CHECK(opacity("d 0.5\nTr 0\n") == 0.5f);
+  CHECK(opacity("illum 3\nd 0.5\n") == 0.5f);
+  // Exporters give glass a d below 1; that it is glass is said already.
+  for (const char* illum : {"4", "6", "7", "9"})
+    CHECK(opacity("Ni 1.5\nd 0.5\nillum " + std::string(illum) + "\n") == 1);
+  for (const char* wrong : {"d 1.5\n", "d -0.1\n", "d x\n", "Tr 2\n", "Tr nan\n", "d\n"})
+    CHECK(contains(error_of("newmtl m\n" + std::string(wrong)), "test.mtl:2: "));
+  CHECK(contains(error_of("d 1\n"), "before the first newmtl"));
+  CHECK(load("newmtl m\nd 0\n").warnings.size() == 1);
+  CHECK(load("newmtl m\nd 0.01\n").warnings.empty());
+}
+
+TEST_CASE("map_d names a file beside the MTL file, by its whole name, behind its options") {
+  const Loaded loaded = load(
+      "newmtl a\nmap_d leaf mask.png\nnewmtl b\nmap_d -clamp on -s 2 2 -o 0.5 -bm 1 2.png\nmap_d -mm 0 1 last.png\n");
+  CHECK(loaded.materials.at(0).alpha_map.filename() == "leaf mask.png");
+  CHECK(loaded.materials.at(1).alpha_map.filename() == "last.png");
+  REQUIRE(loaded.warnings.size() == 1);
+  CHECK(contains(loaded.warnings[0], "-bm, -clamp, -mm, -o and 1 more"));
+  CHECK(contains(error_of("newmtl a\nmap_d\n"), "test.mtl:2: "));
+  CHECK(contains(error_of("newmtl a\nmap_d -clamp on\n"), "test.mtl:2: "));
+}
+
 TEST_CASE("Textures, gains and repeated names are one warning each, whatever their number") {
   const Loaded loaded = load(
       "newmtl a\nmap_Kd a.png\nmap_Bump b.png\nKd 2 0 0\nnewmtl b\nmap_Kd c.png\nbump d.png\nnewmtl a\nKd 0.1 0 0\n");

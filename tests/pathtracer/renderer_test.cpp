@@ -10,19 +10,21 @@
 #include "devices/devices.hpp"
 #include "pathtracer/error.hpp"
 #include "pathtracer/obj_loader.hpp"
+#include "tests/pathtracer/picture.hpp"
 #include "tests/pathtracer/scratch_folder.hpp"
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
+using tandem::test::Estimate;
+using tandem::test::estimate;
+using tandem::test::handle;
+using tandem::test::rendered;
 using tandem::test::ScratchFolder;
 
 namespace {
 
 const std::filesystem::path source_directory = TANDEM_SOURCE_DIRECTORY;
-
-/// The test's device outlives the renderer, so it needs no owner.
-rhi::DeviceHandle handle(rhi::Device& device) { return {std::shared_ptr<void>(), &device}; }
 
 Scene load_text(const std::string& obj, const std::string& mtl) {
   const ScratchFolder folder;
@@ -35,30 +37,6 @@ const std::string room =
     "f 3 7 5 1\nf 6 8 4 2\nf 5 6 2 1\nf 4 8 7 3\nf 2 4 3 1\nf 7 8 6 5\n";
 
 const Camera in_room{.position = {0.1f, 0.2f, 0.3f}, .target = {-1, -0.5f, -1}, .up = {0, 1, 0}, .vertical_fov = 80};
-
-Image rendered(rhi::Device& device, const Scene& scene, const RenderSettings& settings, std::uint32_t samples) {
-  Renderer renderer(handle(device), scene, settings);
-  REQUIRE(renderer.render(samples));
-  return renderer.image();
-}
-
-/// Mean of the red channel over all pixels, and its standard error from the spread of the pixels, which are independent
-/// estimates of the same value in the tests below.
-struct Estimate {
-  double mean = 0;
-  double standard_error = 0;
-};
-
-Estimate estimate(const Image& image) {
-  const auto count = double(image.pixels.size());
-  double sum = 0, squares = 0;
-  for (const glm::vec3& pixel : image.pixels) {
-    sum += pixel.x;
-    squares += double{pixel.x} * double{pixel.x};
-  }
-  const double mean = sum / count;
-  return {mean, std::sqrt((squares / count - mean * mean) / (count - 1))};
-}
 
 /// Form factor from a point to a rectangle parallel to its surface at distance c, of which one corner is straight above
 /// the point and the sides are a and b (Howell, configuration C-13, for instance).
@@ -227,6 +205,7 @@ TANDEM_DEVICE_TEST("Metadata says how a picture came about") {
   CHECK(metadata.at("scene") == "cornell_box.obj");
   CHECK(metadata.at("device") == device.info().name);
   CHECK(metadata.at("driver") == device.info().driver);
+  CHECK(metadata.at("trace") == name(renderer.trace()));
   CHECK(metadata.at("size") == "16x8");
   CHECK(metadata.at("samples") == "2");
   CHECK(metadata.at("depth") == "4");

@@ -61,6 +61,6 @@ TEST_CASE("Devices render the scenes of the thesis alike") {
 }
 
 TEST_CASE("Devices render the scenes that ship alike") {
-  for (const char* name : {"cornell_box.obj", "cornell_spheres.obj"})
+  for (const char* name : {"cornell_box.obj", "cornell_spheres.obj", "foliage.obj"})
     check_devices_agree(source_directory / "scenes" / name, 0.999);
 }

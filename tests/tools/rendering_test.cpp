@@ -229,7 +229,7 @@ TEST_CASE("an interrupt ends a long rendering soon and leaves nothing") {
 TEST_CASE("an interrupt ends the generation of a large scene and leaves nothing") {
   const TemporaryFolder folder;
   const Outcome outcome = run_tandem({"generate", "--triangles", "100000000", "-o", "x.obj"},
-                                     {.folder = folder.path(), .interrupt_after_ms = 500});
+                                     {.folder = folder.path(), .interrupt_after_ms = 3000});
   CHECK(outcome.exit_code == 130);
   CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
   CHECK(folder.names().empty());
