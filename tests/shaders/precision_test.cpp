@@ -67,24 +67,25 @@ TEST_CASE("No device may contract, reorder or approximate anything in the path t
                                                           {".rmiss", rhi::ShaderStage::miss},
                                                           {".rchit", rhi::ShaderStage::closest_hit},
                                                           {".rahit", rhi::ShaderStage::any_hit}};
-  std::set<std::string> seen;
+  std::map<std::string, int> arithmetic;
   for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(shader_directory)) {
     const auto stage = stages.find(entry.path().extension().string());
     if (stage == stages.end()) continue;
     const std::string name = entry.path().filename().string();
     CAPTURE(name);
-    seen.insert(name);
     std::ifstream file(entry.path());
     const Looseness looseness = looseness_of(compile({std::istreambuf_iterator<char>(file), {}}, stage->second));
-    // Hit and miss shaders compute nothing; the others compute a path, or barycentrics at least.
-    if (name != "path_trace.rmiss" && name != "path_trace.rchit") CHECK(looseness.arithmetic > 20);
+    arithmetic[name] = looseness.arithmetic;
     CHECK(looseness.contractible == 0);
     CHECK(looseness.opcodes.empty());
     CHECK(looseness.functions.empty());
   }
-  CHECK(seen == std::set<std::string>{"path_trace.comp", "path_trace.rahit", "path_trace.rchit", "path_trace.rgen",
-                                      "path_trace.rmiss", "path_trace_transparent.comp",
-                                      "path_trace_transparent.rgen"});
+  for (const char* name :
+       {"path_trace.comp", "path_trace_transparent.comp", "path_trace.rgen", "path_trace_transparent.rgen"})
+    CHECK(arithmetic[name] > 100);
+  CHECK(arithmetic["path_trace.rahit"] > 20);
+  CHECK(arithmetic.contains("path_trace.rchit"));
+  CHECK(arithmetic.contains("path_trace.rmiss"));
 }
 
 TEST_CASE("No device may contract, reorder or approximate anything in the mathematical functions") {
