@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -52,9 +54,9 @@ struct ScriptedScene : kernel::TopLevel {
 
   std::vector<kernel::Hit> hits;
   std::vector<kernel::Instance> instance_storage;
-  mutable int closest_calls = 0;
-  mutable int occluded_calls = 0;
-  mutable int visit_calls = 0;
+  mutable std::atomic<int> closest_calls = 0;
+  mutable std::atomic<int> occluded_calls = 0;
+  mutable std::atomic<int> visit_calls = 0;
 };
 
 kernel::Hit triangle_at(float t, bool opaque);
