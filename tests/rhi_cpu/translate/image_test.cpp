@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "rhi/texture.hpp"
 #include "rhi_cpu/kernel/abi.hpp"
@@ -100,12 +101,12 @@ TEST_CASE("texels are written and read in every format, which the shader names o
     int i = 0;
     for (const Case& each : cases) {
       ++i;
-      const std::string image = "image" + std::to_string(i);
-      declarations += "layout(binding = " + std::to_string(i) + (named ? ", " + each.layout : "") + ") uniform " +
-                      each.kind + "image2D " + image + ";\n";
-      statements += "imageStore(" + image + ", ivec2(1, 0), " + each.kind + "vec4(" + each.value + "));\n" + "result[" +
-                    std::to_string(i - 1) + "] = " + (each.kind.empty() ? "floatBitsToUint" : "uvec4") + "(imageLoad(" +
-                    image + ", ivec2(0, 1)));\n";
+      declarations += fmt::format("layout(binding = {}{}) uniform {}image2D image{};\n", i,
+                                  named ? ", " + each.layout : "", each.kind, i);
+      statements += fmt::format(
+          "imageStore(image{0}, ivec2(1, 0), {1}vec4({2}));\n"
+          "result[{3}] = {4}(imageLoad(image{0}, ivec2(0, 1)));\n",
+          i, each.kind, each.value, i - 1, each.kind.empty() ? "floatBitsToUint" : "uvec4");
     }
     const Kernel kernel(declarations + "void main() {\n" + statements + "}");
     constexpr std::size_t count = std::size(cases);
