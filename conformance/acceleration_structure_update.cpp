@@ -273,7 +273,8 @@ void add_compaction_cases(const Group& group) {
     const auto source = build_bottom_level(device, {.geometries = {boxes(device, {{{8, 8, 8}, {9, 9, 9}}, Box{}})},
                                                     .flags = BuildFlags::allow_compaction,
                                                     .label = "boxes"});
-    const auto scene = with_instance(device, device.create_compacted(source, "compacted boxes"));
+    const auto copy = device.create_compacted(source, "compacted boxes");
+    const auto scene = with_instance(device, copy);
     Ray ray;
     ray.decisions = {{.actions = action::generate, .t = 4.5f}};
     check_generated("the ray", trace(context, scene, ray), {.primitive = 1}, 4.5f);

@@ -40,6 +40,7 @@ void Group::add(const std::string& last_name, const std::string& behaviour, std:
 
 std::vector<Case> all_cases() {
   Cases cases;
+  add_device_cases(cases);
   add_ray_query_builtin_cases(cases);
   add_ray_query_traversal_cases(cases);
   add_ray_query_procedural_cases(cases);

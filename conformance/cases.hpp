@@ -20,6 +20,7 @@ struct Group {
   void add(const std::string& last_name, const std::string& behaviour, std::function<void(Context&)> run) const;
 };
 
+void add_device_cases(Cases& cases);
 void add_ray_query_builtin_cases(Cases& cases);
 void add_ray_query_traversal_cases(Cases& cases);
 void add_ray_query_procedural_cases(Cases& cases);
