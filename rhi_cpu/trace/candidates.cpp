@@ -7,6 +7,7 @@
 
 #include "rhi_cpu/trace/filter.hpp"
 #include "rhi_cpu/trace/ray_box.hpp"
+#include "rhi_cpu/trace/vertex_hit.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -22,6 +23,7 @@ using kernel::Ray;
 struct CandidateContext : FilterContext {
   /// Takes a hit or not, and then sets `reach` to how far the ray has to look from now on.
   bool (*offer)(CandidateContext& context, Hit& hit);
+  bool any_offered;       ///< a triangle or a box
   float slack_at_origin;  ///< see rounding_slack
   float reach;
 };
@@ -44,12 +46,17 @@ auto order_of(const Hit& hit) { return std::tie(hit.t, hit.instance_index, hit.g
 
 bool is_opaque_triangle(const Hit& hit) { return hit.opaque && !hit.is_box; }
 
+bool offer(CandidateContext& context, Hit& hit) {
+  context.any_offered = true;
+  return context.offer(context, hit);
+}
+
 void offer_triangle(const RTCFilterFunctionNArguments* arguments) {
   auto& context = *static_cast<CandidateContext*>(arguments->context);
   const Ray& ray = *context.ray;
   Hit hit = filtered_hit(context, *arguments);
   if (!(hit.t > ray.t_min && hit.t < ray.t_max) || is_culled(context.scene->traits[hit.instance_index], ray, hit) ||
-      !context.offer(context, hit)) {
+      !offer(context, hit)) {
     arguments->valid[0] = 0;
     return;
   }
@@ -134,8 +141,19 @@ void initialize_context(CandidateContext& context, const TopLevelScene& scene, c
                         bool (*offer)(CandidateContext&, Hit&)) {
   initialize_context(context, scene, scene.triangles, ray);
   context.offer = offer;
+  context.any_offered = false;
   context.slack_at_origin = slack_at_origin(ray);
   context.reach = ray.t_max + rounding_slack(context, ray.t_max);
+}
+
+GatheringContext gather(const TopLevelScene& scene, const Ray& ray, const Hit* previous, std::span<Hit> hits) {
+  GatheringContext context;
+  initialize_context(context, scene, ray, &keep_among_first);
+  context.previous = previous;
+  context.hits = hits;
+  context.count = 0;
+  offer_all(context, previous != nullptr ? previous->t - rounding_slack(context, previous->t) : 0.0f);
+  return context;
 }
 
 }  // namespace
@@ -156,20 +174,22 @@ void meet_box(const RTCIntersectFunctionNArguments* arguments) {
              .is_box = true};
   if (arguments->valid[0] == 0 || is_culled(instance, ray, hit) ||
       !meets_box(ray, context.scene->instances[instance_index], set.boxes[arguments->primID], hit.t) ||
-      !context.offer(context, hit))
+      !offer(context, hit))
     return;
   reinterpret_cast<RTCRayHit*>(arguments->rayhit)->ray.tfar = context.reach;
 }
 
+std::uint32_t gather_triangles(const TopLevelScene& scene, const Ray& ray, std::span<Hit> hits) {
+  Ray triangles_only = ray;
+  triangles_only.flags |= kernel::ray_flag_skip_aabbs;
+  return gather(scene, triangles_only, nullptr, hits).count;
+}
+
 std::uint32_t gather_candidates(const TopLevelScene& scene, const Ray& ray, const Hit* previous, std::span<Hit> hits) {
   if (hits.empty()) return 0;
-  GatheringContext context;
-  initialize_context(context, scene, ray, &keep_among_first);
-  context.previous = previous;
-  context.hits = hits;
-  context.count = 0;
-  offer_all(context, previous != nullptr ? previous->t - rounding_slack(context, previous->t) : 0.0f);
-  return context.count;
+  const GatheringContext context = gather(scene, ray, previous, hits);
+  if (previous != nullptr || context.any_offered) return context.count;
+  return find_vertex_hit(scene, ray, hits[0]) ? 1 : 0;
 }
 
 bool visit_candidates(const TopLevelScene& scene, const Ray& ray, const kernel::CandidateVisitor& visitor,
@@ -180,6 +200,8 @@ bool visit_candidates(const TopLevelScene& scene, const Ray& ray, const kernel::
   context.committed = &committed;
   context.found = context.finished = false;
   offer_all(context, 0.0f);
+  Hit hit;
+  if (!context.any_offered && find_vertex_hit(scene, ray, hit)) decide(context, hit);
   return context.found;
 }
 

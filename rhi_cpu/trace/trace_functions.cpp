@@ -1,5 +1,6 @@
 #include "rhi_cpu/trace/candidates.hpp"
 #include "rhi_cpu/trace/filter.hpp"
+#include "rhi_cpu/trace/vertex_hit.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -39,7 +40,11 @@ bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
   } else {
     intersect(scene.triangles.scene, query);
   }
-  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) [[unlikely]] {
+    if (!find_vertex_hit(scene, ray, hit)) return false;
+    hit.opaque = true;
+    return true;
+  }
 
   hit.t = query.ray.tfar;
   hit.barycentrics[0] = query.hit.u;
