@@ -135,7 +135,7 @@ void add_diff_command(CLI::App& app, Action& action) {
       "Examples:\n"
       "  tandem diff scenes/cornell_box.obj --a cpu --b vulkan\n"
       "  tandem diff scenes/cornell_box.obj --a vulkan:0 --b vulkan:1 --spp 64 --json diff.json --out diff\n"
-      "  tandem diff scenes/grille.obj --a cpu --trace-a query --b cpu --trace-b pipeline --min-bit-equal 1\n"
+      "  tandem diff scenes/foliage.obj --a cpu --trace-a query --b cpu --trace-b pipeline --min-bit-equal 1\n"
       "  tandem diff model.obj --a cpu --b vulkan --min-bit-equal 0.9999\n"
       "  tandem diff model.obj --a cpu --b vulkan --arbiter cpu-exact");
   command->callback([&action, options] { action = [options] { return compare_devices(*options); }; });

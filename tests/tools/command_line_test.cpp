@@ -69,6 +69,7 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
       {{"render", box, "-o", "x.png", "--depth", "0"}, "--depth: '0' is not a whole number from 1"},
       {{"render", box, "-o", "x.png", "--seed", "4294967296"}, "--seed: '4294967296' is not a whole number"},
       {{"render", box, "-o", "x.png", "--threads", "-1"}, "--threads: '-1' is not a whole number"},
+      {{"render", box, "-o", "x.png", "--trace", "rays"}, "--trace: 'rays' is neither 'query' nor 'pipeline'"},
       {{"render", box, "-o", "x.png", "--fov", "180"}, "--fov: '180' is not a number from 1 to 175"},
       {{"render", box, "-o", "x.png", "--fov", "nan"}, "--fov: 'nan' is not a number"},
       {{"render", box, "-o", "x.png", "--camera-position", "1,2"}, "--camera-position: '1,2' is not three numbers"},

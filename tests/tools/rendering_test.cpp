@@ -103,6 +103,20 @@ TEST_CASE("a missing MTL file is an error, unless it is allowed") {
   CHECK(std::filesystem::exists(folder.path() / "grey.png"));
 }
 
+TEST_CASE("diff of both forms of tracing on a device agrees in every bit") {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_tandem({"diff", box, "--a", "cpu", "--b", "cpu", "--trace", "query", "--trace-b", "pipeline", "--size",
+                  "32x24", "--spp", "2", "--json", "x.json", "--min-bit-equal", "1"},
+                 {.folder = folder.path()});
+  CHECK(outcome.errors == "");
+  REQUIRE(outcome.exit_code == 0);
+  const nlohmann::json json = nlohmann::json::parse(read_text(folder.path() / "x.json"));
+  CHECK(json.at("trace_a") == "query");
+  CHECK(json.at("trace_b") == "pipeline");
+  CHECK(json.at("rays_a") == json.at("rays_b"));
+}
+
 TEST_CASE("diff of a device with itself agrees in every bit, and writes all that it promises") {
   const TemporaryFolder folder;
   const Outcome outcome = run_tandem({"diff", box, "--a", "cpu", "--b", "cpu", "--size", "32x24", "--spp", "2",
