@@ -35,6 +35,9 @@ struct DecodedImage {
   ImageAttributes attributes;
 };
 
+/// Values that a picture has at most, 4 GiB of them: a file that claims more is broken, or of no use here.
+inline constexpr std::uint64_t most_image_values = 1ull << 30;
+
 /// Reads a file. Throws Error with the reason alone when it cannot be read.
 DecodedImage decode_image(const std::filesystem::path& path);
 

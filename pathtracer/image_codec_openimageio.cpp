@@ -1,4 +1,5 @@
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include <OpenImageIO/filesystem.h>
@@ -49,6 +50,10 @@ DecodedImage decode_image(const std::filesystem::path& path) {
                      .values = {},
                      .is_png = std::string_view(input->format_name()) == "png",
                      .attributes = {}};
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
+      std::uint64_t{image.width} * image.height > most_image_values / image.channels)
+    throw Error("its size of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " with " +
+                std::to_string(spec.nchannels) + " channels is not between 1 and 2^30 values");
   image.values.resize(std::size_t{image.width} * image.height * image.channels);
   if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
     throw Error(input->geterror());

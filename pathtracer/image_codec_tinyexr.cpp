@@ -153,6 +153,8 @@ DecodedImage decode_png(std::span<const std::byte> file) {
   image.height = png_get_image_height(reader.png, reader.info);
   image.channels = png_get_channels(reader.png, reader.info);
   image.is_png = true;
+  if (std::uint64_t{image.width} * image.height > most_image_values / image.channels)
+    throw Error("it has more than 2^30 values");
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   std::vector<png_byte> bytes(row_bytes * image.height);

@@ -93,3 +93,9 @@ TEST_CASE("What is no picture cannot be read") {
   CHECK_THROWS_AS(read_image(folder.path() / "absent.exr"), Error);
   CHECK_THROWS_AS(write_image(folder.path() / "b.exr", Image{}, {}), Error);
 }
+
+TEST_CASE("A header that claims more than memory holds is an error") {
+  const ScratchFolder folder;
+  folder.write("a.ppm", "P6\n100000 100000\n255\n");
+  CHECK_THROWS_WITH_AS(read_image(folder.path() / "a.ppm"), doctest::Contains("100000x100000"), Error);
+}
