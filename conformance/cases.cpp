@@ -52,6 +52,7 @@ std::vector<Case> all_cases() {
   add_acceleration_structure_build_cases(cases);
   add_acceleration_structure_instance_cases(cases);
   add_acceleration_structure_update_cases(cases);
+  add_pipeline_cases(cases);
   return cases;
 }
 

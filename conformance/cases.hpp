@@ -32,5 +32,6 @@ void add_acceleration_structure_format_cases(Cases& cases);
 void add_acceleration_structure_build_cases(Cases& cases);
 void add_acceleration_structure_instance_cases(Cases& cases);
 void add_acceleration_structure_update_cases(Cases& cases);
+void add_pipeline_cases(Cases& cases);
 
 }  // namespace tandem::conformance
