@@ -58,8 +58,8 @@ ExpectedHit expected_hit(std::uint32_t instance, std::uint32_t geometry, std::ui
   hit.t = -hit.object_origin.z / hit.object_direction.z;
   const glm::dvec3 point = hit.object_origin + hit.object_direction * hit.t;
   hit.barycentrics = glm::dvec2(point.x - place, point.y);
-  // Seen from above the vertices run counter-clockwise; Vulkan's front face is the clockwise one.
-  hit.front_face = !from_above;
+  // Front: (v1 - v0) x (v2 - v0), which is +z, points against the ray.
+  hit.front_face = from_above;
   return hit;
 }
 

@@ -9,6 +9,8 @@ void add_pipeline_cases(Cases& cases) {
   add_pipeline_ray_flags_cases(cases);
   add_pipeline_shader_table_cases(cases);
   add_pipeline_payload_cases(cases);
+  add_pipeline_recursion_cases(cases);
+  add_pipeline_callable_cases(cases);
 }
 
 }  // namespace tandem::conformance

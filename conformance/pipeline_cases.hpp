@@ -11,5 +11,7 @@ void add_pipeline_intersection_cases(Cases& cases);
 void add_pipeline_ray_flags_cases(Cases& cases);
 void add_pipeline_shader_table_cases(Cases& cases);
 void add_pipeline_payload_cases(Cases& cases);
+void add_pipeline_recursion_cases(Cases& cases);
+void add_pipeline_callable_cases(Cases& cases);
 
 }  // namespace tandem::conformance

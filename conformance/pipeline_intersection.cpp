@@ -215,7 +215,7 @@ void beside_triangles(Context& context) {
   const Report triangle = run_probe(context, probe).reports[0];
   check_closest_hit(triangle, 0, 6);
   check_equal("gl_InstanceID", triangle.instance, 1);
-  check_equal("gl_HitKindEXT", triangle.hit_kind, 0xFFu);
+  check_equal("gl_HitKindEXT", triangle.hit_kind, 0xFEu);
 }
 
 void group_of_geometry(Context& context) {

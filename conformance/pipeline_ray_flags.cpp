@@ -53,7 +53,7 @@ void shadow_ray(Context& context) {
   check_equal("the shader that ran for a ray beside", result.reports[2].shader, reporter::miss);
 }
 
-/// A ray through triangles that it meets from the back (from above) or front (from below).
+/// A ray through triangles that it meets from the front (from above) or back (from below).
 struct Facing {
   std::string_view name;
   std::string_view behaviour;
@@ -64,21 +64,21 @@ struct Facing {
   std::uint32_t kind;
 };
 constexpr Facing facings[] = {
-    {"cull_back_faces.back", "the ray flag cull-back-facing-triangles leaves out back faces", true,
+    {"cull_back_faces.back", "the ray flag cull-back-facing-triangles leaves out back faces", false,
      ray_flags::cull_back, InstanceFlags::none, false, 0},
-    {"cull_back_faces.front", "the ray flag cull-back-facing-triangles leaves front faces", false, ray_flags::cull_back,
+    {"cull_back_faces.front", "the ray flag cull-back-facing-triangles leaves front faces", true, ray_flags::cull_back,
      InstanceFlags::none, true, 0xFE},
-    {"cull_front_faces.back", "the ray flag cull-front-facing-triangles leaves back faces", true, ray_flags::cull_front,
-     InstanceFlags::none, true, 0xFF},
-    {"cull_front_faces.front", "the ray flag cull-front-facing-triangles leaves out front faces", false,
+    {"cull_front_faces.back", "the ray flag cull-front-facing-triangles leaves back faces", false,
+     ray_flags::cull_front, InstanceFlags::none, true, 0xFF},
+    {"cull_front_faces.front", "the ray flag cull-front-facing-triangles leaves out front faces", true,
      ray_flags::cull_front, InstanceFlags::none, false, 0},
-    {"flip_facing.kind", "an instance that flips facing makes back faces front faces", true, 0,
-     InstanceFlags::triangle_flip_facing, true, 0xFE},
-    {"flip_facing.cull", "an instance that flips facing has its front faces left out as such", true,
-     ray_flags::cull_front, InstanceFlags::triangle_flip_facing, false, 0},
-    {"facing_cull_disable.back", "an instance without facing culling keeps its back faces", true, ray_flags::cull_back,
+    {"flip_facing.kind", "an instance that flips facing makes front faces back faces", true, 0,
+     InstanceFlags::triangle_flip_facing, true, 0xFF},
+    {"flip_facing.cull", "an instance that flips facing has its back faces left out as such", true,
+     ray_flags::cull_back, InstanceFlags::triangle_flip_facing, false, 0},
+    {"facing_cull_disable.back", "an instance without facing culling keeps its back faces", false, ray_flags::cull_back,
      InstanceFlags::triangle_facing_cull_disable, true, 0xFF},
-    {"facing_cull_disable.front", "an instance without facing culling keeps its front faces", false,
+    {"facing_cull_disable.front", "an instance without facing culling keeps its front faces", true,
      ray_flags::cull_front, InstanceFlags::triangle_facing_cull_disable, true, 0xFE},
 };
 

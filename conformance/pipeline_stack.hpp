@@ -14,7 +14,7 @@ rhi::TriangleGeometry stacked_triangles(rhi::Device& device, std::uint32_t count
 /// Box i over -i - 0.5 <= z <= -i: the same ray enters it at t = 5 + i.
 rhi::AabbGeometry stacked_boxes(rhi::Device& device, std::uint32_t count, rhi::GeometryFlags flags, float first_z = 0);
 
-/// From z = 5 down through the stack. It meets the back faces of the triangles.
+/// From z = 5 down through the stack. It meets the front faces of the triangles.
 TracedRay through_stack(std::uint32_t flags = 0);
 
 /// The probe's triangle shaders over these geometries, one ray through the stack.
