@@ -284,45 +284,45 @@ void check_opacity(Context& context, const Opacity& opacity) {
 }  // namespace
 
 void add_pipeline_any_hit_cases(Cases& cases) {
-  const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run) {
-    cases.push_back({.name = "ray_tracing_pipeline.any_hit." + name,
-                     .behaviour = behaviour,
-                     .needs = {&rhi::Capabilities::ray_tracing_pipeline},
-                     .run = std::move(run)});
-  };
-  add("accept", "the nearest of the accepted candidates is the closest hit", accept);
-  add("ignore", "an ignored candidate is no hit, and the next behind it is offered", ignore);
-  add("ignore_all", "a ray whose candidates are all ignored misses", ignore_all);
-  add("ignored_farther_than_accepted", "candidates ignored behind the hit change nothing",
-      ignored_farther_than_accepted);
-  add("ignored_keeps_committed_attributes", "ignored candidates leave t, kind and attributes of the hit alone",
-      ignored_keeps_committed_attributes);
-  add("terminate", "terminateRayEXT accepts its candidate, and no further any-hit shader runs", terminate);
-  add("terminate_and_skip_closest_hit", "after terminateRayEXT the flag skip-closest-hit still holds",
-      terminate_and_skip_closest_hit);
-  add("every_candidate_offered", "every candidate is offered at least once", every_candidate_offered);
-  add("no_duplicates", "a geometry with no-duplicate-any-hit offers every candidate exactly once", no_duplicates);
-  add("opaque_geometry_skips", "no any-hit shader runs for an opaque geometry", opaque_geometry_skips);
-  add("payload_survives_ignore", "what an any-hit shader writes to the payload stays, though it ignores its candidate",
-      payload_survives_ignore);
-  add("outside_t_window_not_offered", "candidates outside of (t_min, t_max) are not offered",
-      outside_t_window_not_offered);
-  add("opaque_behind_ignored", "an opaque triangle is hit behind candidates that are ignored", opaque_behind_ignored);
-  add("opaque_in_front", "an opaque triangle in front of accepted candidates is the closest hit", opaque_in_front);
-  add("without_any_hit_shader", "a group without any-hit shader accepts every candidate", without_any_hit_shader);
-  add("without_closest_hit_shader", "a group may have an any-hit shader alone", without_closest_hit_shader);
-  add("own_record", "an any-hit shader reads the record of its geometry", own_record);
-  add("other_shaders_by_geometry", "geometries with records of their own have their own any-hit shaders",
-      other_shaders_by_geometry);
-  add("terminate_on_first_hit_flag", "with the flag terminate-on-first-hit the first accepted candidate is the last",
-      terminate_on_first_hit_flag);
-  add("ignore_in_nested_function", "ignoreIntersectionEXT in a function ends the whole shader",
-      ignore_in_nested_function);
-  add("terminate_in_nested_function", "terminateRayEXT in a function ends the whole shader",
-      terminate_in_nested_function);
+  const Group group{
+      .cases = cases, .name = "ray_tracing_pipeline.any_hit", .needs = {&rhi::Capabilities::ray_tracing_pipeline}};
+  group.add("accept", "the nearest of the accepted candidates is the closest hit", accept);
+  group.add("ignore", "an ignored candidate is no hit, and the next behind it is offered", ignore);
+  group.add("ignore_all", "a ray whose candidates are all ignored misses", ignore_all);
+  group.add("ignored_farther_than_accepted", "candidates ignored behind the hit change nothing",
+            ignored_farther_than_accepted);
+  group.add("ignored_keeps_committed_attributes", "ignored candidates leave t, kind and attributes of the hit alone",
+            ignored_keeps_committed_attributes);
+  group.add("terminate", "terminateRayEXT accepts its candidate, and no further any-hit shader runs", terminate);
+  group.add("terminate_and_skip_closest_hit", "after terminateRayEXT the flag skip-closest-hit still holds",
+            terminate_and_skip_closest_hit);
+  group.add("every_candidate_offered", "every candidate is offered at least once", every_candidate_offered);
+  group.add("no_duplicates", "a geometry with no-duplicate-any-hit offers every candidate exactly once", no_duplicates);
+  group.add("opaque_geometry_skips", "no any-hit shader runs for an opaque geometry", opaque_geometry_skips);
+  group.add("payload_survives_ignore",
+            "what an any-hit shader writes to the payload stays, though it ignores its candidate",
+            payload_survives_ignore);
+  group.add("outside_t_window_not_offered", "candidates outside of (t_min, t_max) are not offered",
+            outside_t_window_not_offered);
+  group.add("opaque_behind_ignored", "an opaque triangle is hit behind candidates that are ignored",
+            opaque_behind_ignored);
+  group.add("opaque_in_front", "an opaque triangle in front of accepted candidates is the closest hit",
+            opaque_in_front);
+  group.add("without_any_hit_shader", "a group without any-hit shader accepts every candidate", without_any_hit_shader);
+  group.add("without_closest_hit_shader", "a group may have an any-hit shader alone", without_closest_hit_shader);
+  group.add("own_record", "an any-hit shader reads the record of its geometry", own_record);
+  group.add("other_shaders_by_geometry", "geometries with records of their own have their own any-hit shaders",
+            other_shaders_by_geometry);
+  group.add("terminate_on_first_hit_flag",
+            "with the flag terminate-on-first-hit the first accepted candidate is the last",
+            terminate_on_first_hit_flag);
+  group.add("ignore_in_nested_function", "ignoreIntersectionEXT in a function ends the whole shader",
+            ignore_in_nested_function);
+  group.add("terminate_in_nested_function", "terminateRayEXT in a function ends the whole shader",
+            terminate_in_nested_function);
   for (const Opacity& opacity : opacities)
-    add("opacity." + std::string(opacity.name), std::string(opacity.behaviour),
-        [opacity](Context& context) { check_opacity(context, opacity); });
+    group.add("opacity_" + std::string(opacity.name), std::string(opacity.behaviour),
+              [opacity](Context& context) { check_opacity(context, opacity); });
 }
 
 }  // namespace tandem::conformance

@@ -198,7 +198,7 @@ void add_pipeline_builtin_cases(Cases& cases) {
   for (const Builtin& builtin : builtins())
     for (const auto& [reporter, stage] : reporters) {
       if (std::find(builtin.stages.begin(), builtin.stages.end(), reporter) == builtin.stages.end()) continue;
-      cases.push_back({.name = fmt::format("ray_tracing_pipeline.builtin.{}.{}", builtin.name, stage),
+      cases.push_back({.name = fmt::format("ray_tracing_pipeline.builtin.{}_in_{}", builtin.name, stage),
                        .behaviour = fmt::format("{} in a {} shader", builtin.variable, stage),
                        .needs = {&rhi::Capabilities::ray_tracing_pipeline},
                        .run = [builtin, reporter = reporter](Context& context) {

@@ -188,21 +188,19 @@ void main() {
 }  // namespace
 
 void add_pipeline_callable_cases(Cases& cases) {
-  const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run) {
-    cases.push_back({.name = "ray_tracing_pipeline.callable." + name,
-                     .behaviour = behaviour,
-                     .needs = {&rhi::Capabilities::ray_tracing_pipeline},
-                     .run = std::move(run)});
-  };
-  add("from_ray_generation", "a ray generation shader calls a callable shader", from_ray_generation);
-  add("from_closest_hit_and_miss", "closest-hit and miss shaders call callable shaders", from_closest_hit_and_miss);
-  add("nested", "callable shaders call callable shaders", nested);
-  add("by_record", "the index picks the callable record, its shader and its data; a record without shader runs nothing",
-      by_record);
-  add("first_record", "callable records are counted from first_callable_record on", first_record);
-  add("data_of_struct", "structures, arrays and matrices go to a callable shader and back", data_of_struct);
-  add("several_locations", "a call changes only the data that it names", several_locations);
-  add("knows_launch", "gl_LaunchIDEXT and gl_LaunchSizeEXT in a callable shader", knows_launch);
+  const Group group{
+      .cases = cases, .name = "ray_tracing_pipeline.callable", .needs = {&rhi::Capabilities::ray_tracing_pipeline}};
+  group.add("from_ray_generation", "a ray generation shader calls a callable shader", from_ray_generation);
+  group.add("from_closest_hit_and_miss", "closest-hit and miss shaders call callable shaders",
+            from_closest_hit_and_miss);
+  group.add("nested", "callable shaders call callable shaders", nested);
+  group.add("by_record",
+            "the index picks the callable record, its shader and its data; a record without shader runs nothing",
+            by_record);
+  group.add("first_record", "callable records are counted from first_callable_record on", first_record);
+  group.add("data_of_struct", "structures, arrays and matrices go to a callable shader and back", data_of_struct);
+  group.add("several_locations", "a call changes only the data that it names", several_locations);
+  group.add("knows_launch", "gl_LaunchIDEXT and gl_LaunchSizeEXT in a callable shader", knows_launch);
 }
 
 }  // namespace tandem::conformance

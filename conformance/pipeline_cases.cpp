@@ -11,6 +11,9 @@ void add_pipeline_cases(Cases& cases) {
   add_pipeline_payload_cases(cases);
   add_pipeline_recursion_cases(cases);
   add_pipeline_callable_cases(cases);
+  add_pipeline_launch_cases(cases);
+  add_pipeline_against_query_cases(cases);
+  add_pipeline_watertightness_cases(cases);
 }
 
 }  // namespace tandem::conformance

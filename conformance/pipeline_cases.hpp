@@ -13,5 +13,8 @@ void add_pipeline_shader_table_cases(Cases& cases);
 void add_pipeline_payload_cases(Cases& cases);
 void add_pipeline_recursion_cases(Cases& cases);
 void add_pipeline_callable_cases(Cases& cases);
+void add_pipeline_launch_cases(Cases& cases);
+void add_pipeline_against_query_cases(Cases& cases);
+void add_pipeline_watertightness_cases(Cases& cases);
 
 }  // namespace tandem::conformance

@@ -240,47 +240,49 @@ void group_of_geometry(Context& context) {
 }  // namespace
 
 void add_pipeline_intersection_cases(Cases& cases) {
-  const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run) {
-    cases.push_back({.name = "ray_tracing_pipeline.procedural_geometry." + name,
-                     .behaviour = behaviour,
-                     .needs = {&rhi::Capabilities::ray_tracing_pipeline},
-                     .run = std::move(run)});
-  };
-  add("report_hit", "t, kind and 32 bytes of attributes of a reported hit reach the closest-hit shader", report_hit);
-  add("hit_kind_ends", "hit kinds 0 and 127 reach the closest-hit shader", hit_kind_ends);
-  add("no_report", "a box whose shader reports nothing is not hit", no_report);
-  add("not_run_outside_boxes", "a ray that meets no box misses", not_run_outside_boxes);
-  add("report_before_t_min", "a report before t_min is refused",
-      [](Context& context) { check_window(context, 5, false); });
-  add("report_behind_t_max", "a report behind t_max is refused",
-      [](Context& context) { check_window(context, 5.5F, false); });
-  add("report_at_t_min", "a report at t_min is accepted",
-      [](Context& context) { check_window(context, 5.125F, true); });
-  add("report_at_t_max", "a report at t_max is accepted",
-      [](Context& context) { check_window(context, 5.375F, true); });
-  add("descending_reports", "each of several reports that come nearer is accepted", descending_reports);
-  add("ascending_reports", "reports behind an accepted one are refused, and its attributes stay", ascending_reports);
-  add("mixed_reports", "of several reports the nearest wins, with its attributes", mixed_reports);
-  add("t_max_after_accepted", "gl_RayTmaxEXT in an intersection shader is the t that it reported last and nearest",
-      t_max_after_accepted);
-  add("t_max_after_ignored", "gl_RayTmaxEXT in an intersection shader stays when the any-hit shader ignores the report",
-      t_max_after_ignored);
-  add("ignored_returns_false", "reportIntersectionEXT returns false when the any-hit shader ignores the hit",
-      ignored_returns_false);
-  add("terminate_ends_shader", "terminateRayEXT in the any-hit shader ends the intersection shader too",
-      terminate_ends_shader);
-  add("nearest_of_boxes", "the nearest report of several boxes wins, wherever the boxes are", nearest_of_boxes);
-  add("opaque_boxes", "reports of opaque boxes are accepted without any-hit shader", opaque_boxes);
-  add("without_any_hit_shader", "reports are accepted where the group has no any-hit shader", without_any_hit_shader);
-  add("any_hit_sees_report", "t, kind and attributes of a reported hit reach the any-hit shader", any_hit_sees_report);
-  add("ignored_keeps_committed_attributes", "ignored reports leave t, kind and attributes of the hit alone",
-      ignored_keeps_committed_attributes);
-  add("terminate_on_first_hit", "with the flag terminate-on-first-hit the first accepted report is the last",
-      terminate_on_first_hit);
-  add("skip_closest_hit", "with the flag skip-closest-hit intersection shaders still run", skip_closest_hit);
-  add("ray_inside_box", "a ray that begins inside a box meets it", ray_inside_box);
-  add("beside_triangles", "boxes and triangles of two instances hide each other", beside_triangles);
-  add("group_of_geometry", "geometries with records of their own have their own shaders", group_of_geometry);
+  const Group group{.cases = cases,
+                    .name = "ray_tracing_pipeline.procedural_geometry",
+                    .needs = {&rhi::Capabilities::ray_tracing_pipeline}};
+  group.add("report_hit", "t, kind and 32 bytes of attributes of a reported hit reach the closest-hit shader",
+            report_hit);
+  group.add("hit_kind_ends", "hit kinds 0 and 127 reach the closest-hit shader", hit_kind_ends);
+  group.add("no_report", "a box whose shader reports nothing is not hit", no_report);
+  group.add("not_run_outside_boxes", "a ray that meets no box misses", not_run_outside_boxes);
+  group.add("report_before_t_min", "a report before t_min is refused",
+            [](Context& context) { check_window(context, 5, false); });
+  group.add("report_behind_t_max", "a report behind t_max is refused",
+            [](Context& context) { check_window(context, 5.5F, false); });
+  group.add("report_at_t_min", "a report at t_min is accepted",
+            [](Context& context) { check_window(context, 5.125F, true); });
+  group.add("report_at_t_max", "a report at t_max is accepted",
+            [](Context& context) { check_window(context, 5.375F, true); });
+  group.add("descending_reports", "each of several reports that come nearer is accepted", descending_reports);
+  group.add("ascending_reports", "reports behind an accepted one are refused, and its attributes stay",
+            ascending_reports);
+  group.add("mixed_reports", "of several reports the nearest wins, with its attributes", mixed_reports);
+  group.add("t_max_after_accepted",
+            "gl_RayTmaxEXT in an intersection shader is the t that it reported last and nearest", t_max_after_accepted);
+  group.add("t_max_after_ignored",
+            "gl_RayTmaxEXT in an intersection shader stays when the any-hit shader ignores the report",
+            t_max_after_ignored);
+  group.add("ignored_returns_false", "reportIntersectionEXT returns false when the any-hit shader ignores the hit",
+            ignored_returns_false);
+  group.add("terminate_ends_shader", "terminateRayEXT in the any-hit shader ends the intersection shader too",
+            terminate_ends_shader);
+  group.add("nearest_of_boxes", "the nearest report of several boxes wins, wherever the boxes are", nearest_of_boxes);
+  group.add("opaque_boxes", "reports of opaque boxes are accepted without any-hit shader", opaque_boxes);
+  group.add("without_any_hit_shader", "reports are accepted where the group has no any-hit shader",
+            without_any_hit_shader);
+  group.add("any_hit_sees_report", "t, kind and attributes of a reported hit reach the any-hit shader",
+            any_hit_sees_report);
+  group.add("ignored_keeps_committed_attributes", "ignored reports leave t, kind and attributes of the hit alone",
+            ignored_keeps_committed_attributes);
+  group.add("terminate_on_first_hit", "with the flag terminate-on-first-hit the first accepted report is the last",
+            terminate_on_first_hit);
+  group.add("skip_closest_hit", "with the flag skip-closest-hit intersection shaders still run", skip_closest_hit);
+  group.add("ray_inside_box", "a ray that begins inside a box meets it", ray_inside_box);
+  group.add("beside_triangles", "boxes and triangles of two instances hide each other", beside_triangles);
+  group.add("group_of_geometry", "geometries with records of their own have their own shaders", group_of_geometry);
 }
 
 }  // namespace tandem::conformance

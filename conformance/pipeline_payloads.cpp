@@ -280,10 +280,8 @@ void add_pipeline_payload_cases(Cases& cases) {
   const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run,
                             std::vector<Capability> more_needs = {}) {
     more_needs.push_back(&rhi::Capabilities::ray_tracing_pipeline);
-    cases.push_back({.name = "ray_tracing_pipeline.payloads." + name,
-                     .behaviour = behaviour,
-                     .needs = std::move(more_needs),
-                     .run = std::move(run)});
+    Group{.cases = cases, .name = "ray_tracing_pipeline.payloads", .needs = std::move(more_needs)}.add(name, behaviour,
+                                                                                                       std::move(run));
   };
   for (const PayloadShape& shape : payload_shapes())
     add(

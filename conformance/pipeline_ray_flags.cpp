@@ -64,21 +64,21 @@ struct Facing {
   std::uint32_t kind;
 };
 constexpr Facing facings[] = {
-    {"cull_back_faces.back", "the ray flag cull-back-facing-triangles leaves out back faces", false,
+    {"cull_back_faces_back", "the ray flag cull-back-facing-triangles leaves out back faces", false,
      ray_flags::cull_back, InstanceFlags::none, false, 0},
-    {"cull_back_faces.front", "the ray flag cull-back-facing-triangles leaves front faces", true, ray_flags::cull_back,
+    {"cull_back_faces_front", "the ray flag cull-back-facing-triangles leaves front faces", true, ray_flags::cull_back,
      InstanceFlags::none, true, 0xFE},
-    {"cull_front_faces.back", "the ray flag cull-front-facing-triangles leaves back faces", false,
+    {"cull_front_faces_back", "the ray flag cull-front-facing-triangles leaves back faces", false,
      ray_flags::cull_front, InstanceFlags::none, true, 0xFF},
-    {"cull_front_faces.front", "the ray flag cull-front-facing-triangles leaves out front faces", true,
+    {"cull_front_faces_front", "the ray flag cull-front-facing-triangles leaves out front faces", true,
      ray_flags::cull_front, InstanceFlags::none, false, 0},
-    {"flip_facing.kind", "an instance that flips facing makes front faces back faces", true, 0,
+    {"flip_facing_kind", "an instance that flips facing makes front faces back faces", true, 0,
      InstanceFlags::triangle_flip_facing, true, 0xFF},
-    {"flip_facing.cull", "an instance that flips facing has its back faces left out as such", true,
+    {"flip_facing_cull", "an instance that flips facing has its back faces left out as such", true,
      ray_flags::cull_back, InstanceFlags::triangle_flip_facing, false, 0},
-    {"facing_cull_disable.back", "an instance without facing culling keeps its back faces", false, ray_flags::cull_back,
+    {"facing_cull_disable_back", "an instance without facing culling keeps its back faces", false, ray_flags::cull_back,
      InstanceFlags::triangle_facing_cull_disable, true, 0xFF},
-    {"facing_cull_disable.front", "an instance without facing culling keeps its front faces", true,
+    {"facing_cull_disable_front", "an instance without facing culling keeps its front faces", true,
      ray_flags::cull_front, InstanceFlags::triangle_facing_cull_disable, true, 0xFE},
 };
 
@@ -190,10 +190,8 @@ void add_pipeline_ray_flags_cases(Cases& cases) {
   const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run,
                             std::vector<Capability> more_needs = {}) {
     more_needs.push_back(&rhi::Capabilities::ray_tracing_pipeline);
-    cases.push_back({.name = "ray_tracing_pipeline.ray_flags." + name,
-                     .behaviour = behaviour,
-                     .needs = std::move(more_needs),
-                     .run = std::move(run)});
+    Group{.cases = cases, .name = "ray_tracing_pipeline.ray_flags", .needs = std::move(more_needs)}.add(name, behaviour,
+                                                                                                        std::move(run));
   };
   add("skip_closest_hit", "the flag skip-closest-hit keeps the closest-hit shader from running, not the miss shader",
       skip_closest_hit);

@@ -226,19 +226,15 @@ void main() {
 }  // namespace
 
 void add_pipeline_recursion_cases(Cases& cases) {
-  const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run) {
-    cases.push_back({.name = "ray_tracing_pipeline.recursion." + name,
-                     .behaviour = behaviour,
-                     .needs = {&rhi::Capabilities::ray_tracing_pipeline},
-                     .run = std::move(run)});
-  };
+  const Group group{
+      .cases = cases, .name = "ray_tracing_pipeline.recursion", .needs = {&rhi::Capabilities::ray_tracing_pipeline}};
   for (const std::uint32_t depth : {1u, 2u, 4u, 8u})
-    add(fmt::format("depth_{}", depth),
-        fmt::format("{} rays are in flight at once, and shaders keep what they knew before they traced", depth),
-        [depth](Context& context) { recurse(context, depth); });
-  add("trace_from_miss", "a miss shader traces rays", trace_from_miss);
-  add("payload_passed_on", "a closest-hit shader traces with the payload that it got", payload_passed_on);
-  add("sibling_rays", "shaders trace several rays one after the other at every depth", sibling_rays);
+    group.add(fmt::format("depth_{}", depth),
+              fmt::format("{} rays are in flight at once, and shaders keep what they knew before they traced", depth),
+              [depth](Context& context) { recurse(context, depth); });
+  group.add("trace_from_miss", "a miss shader traces rays", trace_from_miss);
+  group.add("payload_passed_on", "a closest-hit shader traces with the payload that it got", payload_passed_on);
+  group.add("sibling_rays", "shaders trace several rays one after the other at every depth", sibling_rays);
 }
 
 }  // namespace tandem::conformance

@@ -297,31 +297,29 @@ void ray_generation_record(Context& context) {
 }  // namespace
 
 void add_pipeline_shader_table_cases(Cases& cases) {
-  const auto add = [&cases](const std::string& name, const std::string& behaviour, std::function<void(Context&)> run) {
-    cases.push_back({.name = "ray_tracing_pipeline.sbt." + name,
-                     .behaviour = behaviour,
-                     .needs = {&rhi::Capabilities::ray_tracing_pipeline},
-                     .run = std::move(run)});
-  };
-  add("instance_offset", "an instance's SBT offset picks the hit record", instance_offset);
-  add("record_offset", "sbtRecordOffset is added to the instance's", record_offset);
-  add("geometry_stride", "the geometry index times sbtRecordStride is added", geometry_stride);
-  add("offset_and_stride", "offset and stride are each ray's own", offset_and_stride);
-  add("four_bits_of_offset_and_stride", "only the lowest four bits of sbtRecordOffset and sbtRecordStride count",
-      four_bits_of_offset_and_stride);
-  add("first_hit_record", "hit records are counted from first_hit_record on", first_hit_record);
-  add("different_groups", "records name different hit groups", different_groups);
-  add("miss_index", "the miss index picks the miss record", miss_index);
-  add("sixteen_bits_of_miss_index", "only the lowest sixteen bits of the miss index count", sixteen_bits_of_miss_index);
-  add("first_miss_record", "miss records are counted from first_miss_record on", first_miss_record);
-  add("no_hit_shader", "a hit record without group runs nothing, and its ray does not miss", no_hit_shader);
-  add("no_hit_shader_accepts", "a hit record without group accepts candidates", no_hit_shader_accepts);
-  add("no_miss_shader", "a miss record without shader runs nothing", no_miss_shader);
-  add("explicit_strides", "records may lie further apart than they have to", explicit_strides);
-  add("records_of_different_sizes", "records of a kind may hold different amounts of data", records_of_different_sizes);
-  add("data_of_hit_group", "all shaders of a hit group read the same record", data_of_hit_group);
-  add("data_layout", "vectors, structures, arrays and matrices of a record have the layout std430", data_layout);
-  add("ray_generation_record", "a trace runs the ray generation record that it names", ray_generation_record);
+  const Group group{
+      .cases = cases, .name = "ray_tracing_pipeline.sbt", .needs = {&rhi::Capabilities::ray_tracing_pipeline}};
+  group.add("instance_offset", "an instance's SBT offset picks the hit record", instance_offset);
+  group.add("record_offset", "sbtRecordOffset is added to the instance's", record_offset);
+  group.add("geometry_stride", "the geometry index times sbtRecordStride is added", geometry_stride);
+  group.add("offset_and_stride", "offset and stride are each ray's own", offset_and_stride);
+  group.add("four_bits_of_offset_and_stride", "only the lowest four bits of sbtRecordOffset and sbtRecordStride count",
+            four_bits_of_offset_and_stride);
+  group.add("first_hit_record", "hit records are counted from first_hit_record on", first_hit_record);
+  group.add("different_groups", "records name different hit groups", different_groups);
+  group.add("miss_index", "the miss index picks the miss record", miss_index);
+  group.add("sixteen_bits_of_miss_index", "only the lowest sixteen bits of the miss index count",
+            sixteen_bits_of_miss_index);
+  group.add("first_miss_record", "miss records are counted from first_miss_record on", first_miss_record);
+  group.add("no_hit_shader", "a hit record without group runs nothing, and its ray does not miss", no_hit_shader);
+  group.add("no_hit_shader_accepts", "a hit record without group accepts candidates", no_hit_shader_accepts);
+  group.add("no_miss_shader", "a miss record without shader runs nothing", no_miss_shader);
+  group.add("explicit_strides", "records may lie further apart than they have to", explicit_strides);
+  group.add("records_of_different_sizes", "records of a kind may hold different amounts of data",
+            records_of_different_sizes);
+  group.add("data_of_hit_group", "all shaders of a hit group read the same record", data_of_hit_group);
+  group.add("data_layout", "vectors, structures, arrays and matrices of a record have the layout std430", data_layout);
+  group.add("ray_generation_record", "a trace runs the ray generation record that it names", ray_generation_record);
 }
 
 }  // namespace tandem::conformance

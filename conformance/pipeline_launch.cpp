@@ -1,0 +1,415 @@
+#include <array>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+#include "conformance/check.hpp"
+#include "conformance/pipeline_cases.hpp"
+#include "conformance/pipeline_stack.hpp"
+
+// How a trace starts, and what its shaders are given besides the scene: sizes, push constants, specialisation
+// constants, bind groups, images and buffer references.
+namespace tandem::conformance {
+namespace {
+
+using namespace pipeline;
+using Size = std::array<std::uint32_t, 3>;
+
+// Counts every invocation where it belongs, and those that do not belong anywhere in word 0.
+const std::string counting_text = R"(
+layout(set = 0, binding = 1, std430) buffer Results { uint results[]; };
+layout(set = 0, binding = 2, std430) readonly buffer Expected { uint width; uint height; uint depth; };
+void main() {
+  bool right = gl_LaunchSizeEXT == uvec3(width, height, depth) && all(lessThan(gl_LaunchIDEXT, gl_LaunchSizeEXT));
+  uint index = right ? 1u + (gl_LaunchIDEXT.z * height + gl_LaunchIDEXT.y) * width + gl_LaunchIDEXT.x : 0u;
+  atomicAdd(results[index], 1u);
+}
+)";
+
+/// A pipeline of the counting shader, its resources, and what they hold after the commands of `record`.
+struct Counting {
+  rhi::RayTracingPipelineHandle pipeline = {};
+  Launch launch = {};
+  std::size_t result_count = 0;
+};
+
+Counting make_counting(Context& context, const Size& size) {
+  Counting counting;
+  counting.result_count = 1 + std::size_t{size[0]} * size[1] * size[2];
+  counting.pipeline = make_pipeline(context, {.ray_generation = {counting_text}, .max_recursion_depth = 0}, "counting");
+  counting.launch.buffers = {
+      buffer_of(context.device(), std::vector<std::uint32_t>(counting.result_count), "results"),
+      buffer_of(context.device(), std::vector<std::uint32_t>(size.begin(), size.end()), "expected size")};
+  counting.launch.trace.size = size;
+  return counting;
+}
+
+/// Every invocation ran `times`, no other did.
+void check_counts(Context& context, const Counting& counting, std::uint32_t times) {
+  const auto results = contents<std::uint32_t>(context.device(), counting.launch.buffers[0], counting.result_count);
+  check_equal("invocations with a wrong gl_LaunchIDEXT or gl_LaunchSizeEXT", results[0], 0u);
+  for (std::size_t i = 1; i < results.size(); ++i)
+    check_equal(fmt::format("how often invocation {} ran", i - 1), results[i], times);
+}
+
+void launch_of(Context& context, const Size& size) {
+  const Counting counting = make_counting(context, size);
+  run(context.device(), counting.pipeline, counting.launch);
+  check_counts(context, counting, 1);
+}
+
+void size_zero(Context& context) {
+  Counting counting = make_counting(context, {4, 4, 4});
+  for (const Size& size : {Size{0, 4, 4}, Size{4, 0, 4}, Size{4, 4, 0}, Size{0, 0, 0}}) {
+    counting.launch.trace.size = size;
+    run(context.device(), counting.pipeline, counting.launch);
+  }
+  check_counts(context, counting, 0);
+}
+
+void indirect(Context& context) {
+  // The size in the desc is not used; the one in the buffer has an offset.
+  Counting counting = make_counting(context, {9, 5, 3});
+  counting.launch.trace.size = {1, 1, 1};
+  const std::vector<std::uint32_t> words = {77, 9, 5, 3, 88};
+  counting.launch.trace.indirect_size = {buffer_of(context.device(), words, "size"), 4, 12};
+  run(context.device(), counting.pipeline, counting.launch);
+  check_counts(context, counting, 1);
+}
+
+void indirect_zero(Context& context) {
+  Counting counting = make_counting(context, {4, 1, 1});
+  const std::vector<std::uint32_t> words = {4, 0, 1};
+  counting.launch.trace.indirect_size = {buffer_of(context.device(), words, "size")};
+  run(context.device(), counting.pipeline, counting.launch);
+  check_counts(context, counting, 0);
+}
+
+void indirect_from_shader(Context& context) {
+  // A trace writes the size of the next one in the same list.
+  const std::string writes_size = R"(
+layout(set = 0, binding = 1, std430) writeonly buffer Size { uint size[]; };
+void main() { size[gl_LaunchIDEXT.x] = 6u - gl_LaunchIDEXT.x; }
+)";
+  rhi::Device& device = context.device();
+  const Counting counting = make_counting(context, {6, 5, 4});
+  Launch first;
+  first.buffers = {buffer_of(device, std::vector<std::uint32_t>(3), "size")};
+  const auto writer =
+      make_pipeline(context, {.ray_generation = {writes_size}, .max_recursion_depth = 0}, "writes size");
+  const rhi::CommandListHandle list = device.create_command_list("indirect");
+  rhi::TraceRaysDesc trace;
+  trace.table = make_table(device, writer, first);
+  trace.bind_groups = {make_bind_group(device, writer, first)};
+  trace.size = {3, 1, 1};
+  list->trace_rays(trace);
+  trace.table = make_table(device, counting.pipeline, counting.launch);
+  trace.bind_groups = {make_bind_group(device, counting.pipeline, counting.launch)};
+  trace.size = {1, 1, 1};
+  trace.indirect_size = {first.buffers[0]};
+  list->trace_rays(trace);
+  device.submit(list)->wait();
+  check_counts(context, counting, 1);
+}
+
+void in_order(Context& context) {
+  // Each of several traces of one list sees what the one before it wrote.
+  const std::string text = R"(
+layout(set = 0, binding = 1, std430) buffer Values { uint values[]; };
+void main() {
+  uint neighbour = values[(gl_LaunchIDEXT.x + 1u) % 64u + 64u * (values[128] % 2u)];
+  values[gl_LaunchIDEXT.x + 64u * ((values[128] + 1u) % 2u)] = neighbour + 1u;
+}
+)";
+  const std::string step_text = R"(
+layout(set = 0, binding = 1, std430) buffer Values { uint values[]; };
+void main() { ++values[128]; }
+)";
+  rhi::Device& device = context.device();
+  const auto pipeline =
+      make_pipeline(context, {.ray_generation = {text, step_text}, .max_recursion_depth = 0}, "in order");
+  Launch launch;
+  std::vector<std::uint32_t> values(129);
+  for (std::uint32_t i = 0; i < 64; ++i) values[i] = i * 1000;
+  launch.buffers = {buffer_of(device, values, "values")};
+  rhi::TraceRaysDesc trace;
+  trace.table = make_table(device, pipeline, launch);
+  trace.bind_groups = {make_bind_group(device, pipeline, launch)};
+  const rhi::CommandListHandle list = device.create_command_list("in order");
+  for (int step = 0; step < 10; ++step) {
+    trace.ray_generation_record = 0;
+    trace.size = {64, 1, 1};
+    list->trace_rays(trace);
+    trace.ray_generation_record = 1;
+    trace.size = {1, 1, 1};
+    list->trace_rays(trace);
+  }
+  device.submit(list)->wait();
+  const auto results = contents<std::uint32_t>(device, launch.buffers[0], 129);
+  for (std::uint32_t i = 0; i < 64; ++i)
+    check_equal(fmt::format("value {} after ten traces", i), results[i], (i + 10) % 64 * 1000 + 10);
+}
+
+const std::string scene_declaration = "layout(set = 0, binding = 0) uniform accelerationStructureEXT scene;\n";
+const std::string results_declaration =
+    "layout(set = 0, binding = 1, std430) writeonly buffer Results { uint results[]; };\n";
+const std::string payload_out = "layout(location = 0) rayPayloadEXT uint payload;\n";
+const std::string payload_in = "layout(location = 0) rayPayloadInEXT uint payload;\n";
+const std::string hit_and_miss = R"(
+  traceRayEXT(scene, 0u, 0xffu, 0u, 0u, 0u, vec3(0.25, 0.25, 5.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0, 0);
+  results[0] = payload;
+  traceRayEXT(scene, 0u, 0xffu, 0u, 0u, 0u, vec3(-9.0, 0.25, 5.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0, 0);
+  results[1] = payload;
+)";
+
+Scene one_triangle(rhi::Device& device) {
+  return build_scene(device, {stacked_triangles(device, 1, rhi::GeometryFlags::none)});
+}
+
+void push_constants(Context& context) {
+  // Every stage declares a block of another size; all see the same bytes.
+  const PipelineText text = {
+      .ray_generation = {scene_declaration + results_declaration + payload_out +
+                         "layout(push_constant) uniform Constants { uint a; };\nvoid main() { payload = a;" +
+                         hit_and_miss + "}\n"},
+      .miss = {payload_in + "layout(push_constant) uniform Constants { layout(offset = 4) uint b; uint c; };\n"
+                            "void main() { payload += b + c; }\n"},
+      .hit_groups = {{.closest_hit = payload_in + "layout(push_constant) uniform Constants { uvec4 v; uvec4 w; };\n"
+                                                  "void main() { payload += v.w + w.w; }\n",
+                      .any_hit = payload_in + "layout(push_constant) uniform Constants { uint v[5]; };\n"
+                                              "void main() { payload = v[4]; }\n"}}};
+  const std::array<std::uint32_t, 8> constants = {1, 20, 300, 4000, 50000, 600000, 7000000, 80000000};
+  const Scene scene = one_triangle(context.device());
+  Launch launch;
+  launch.scene = scene.top_level;
+  launch.trace.push_constants = std::as_bytes(std::span(constants));
+  const auto results = results_of<std::uint32_t>(context, text, launch, 2, "push constants");
+  check_equal("what any-hit and closest-hit shader made of them", results[0], 80054000u);
+  check_equal("what the miss shader made of them", results[1], 80054320u);
+}
+
+void specialization(Context& context) {
+  // Constant 1 is declared by two stages with different defaults, 2 by one, 3 is left at its default.
+  const PipelineText text = {
+      .ray_generation = {scene_declaration + results_declaration + payload_out +
+                         "layout(constant_id = 1) const uint one = 5u;\nvoid main() { payload = one;" + hit_and_miss +
+                         "}\n"},
+      .miss = {payload_in + "layout(constant_id = 2) const float two = 1.0;\nlayout(constant_id = 3) const int three = "
+                            "-7;\nvoid main() { payload = uint(two * 4.0) + uint(-three); }\n"},
+      .hit_groups = {{.closest_hit = payload_in + "layout(constant_id = 1) const uint one = 6u;\nlayout(constant_id = "
+                                                  "4) const bool four = false;\n"
+                                                  "void main() { payload += one * (four ? 100u : 10000u); }\n"}},
+      .specialization = {{1, 11}, {2, std::bit_cast<std::uint32_t>(2.5F)}, {4, 1}}};
+  const Scene scene = one_triangle(context.device());
+  Launch launch;
+  launch.scene = scene.top_level;
+  const auto results = results_of<std::uint32_t>(context, text, launch, 2, "specialisation");
+  check_equal("what the closest-hit shader made of them", results[0], 1111u);
+  check_equal("what the miss shader made of them", results[1], 17u);
+}
+
+void bind_group_with_compute(Context& context) {
+  // One bind group, made for either pipeline, serves both.
+  const std::string declarations = R"(
+layout(set = 0, binding = 1, std430) readonly buffer Inputs { uint inputs[]; };
+layout(set = 0, binding = 2, std430) buffer Values { uint values[]; };
+)";
+  rhi::Device& device = context.device();
+  const auto tracing = make_pipeline(
+      context,
+      {.ray_generation = {declarations +
+                          "void main() { uint i = gl_LaunchIDEXT.x; values[i] = values[i] * 2u + inputs[i]; }\n"},
+       .max_recursion_depth = 0},
+      "shares a bind group");
+  const auto compute = context.compute_pipeline("#version 460\nlayout(local_size_x = 8) in;\n" + declarations +
+                                                    "void main() { uint i = gl_GlobalInvocationID.x; values[i] = "
+                                                    "values[i] * 3u + inputs[i]; }\n",
+                                                "shares a bind group");
+  for (const rhi::PipelineHandle& maker : {rhi::PipelineHandle(tracing), rhi::PipelineHandle(compute)}) {
+    Launch launch;
+    std::vector<std::uint32_t> inputs;
+    for (std::uint32_t i = 0; i < 8; ++i) inputs.push_back(i);
+    launch.buffers = {buffer_of(device, inputs, "inputs"),
+                      buffer_of(device, std::vector<std::uint32_t>(8, 1), "values")};
+    const rhi::BindGroupHandle group = make_bind_group(device, maker, launch);
+    const rhi::CommandListHandle list = device.create_command_list("shared bind group");
+    rhi::TraceRaysDesc trace;
+    trace.table = make_table(device, tracing, launch);
+    trace.bind_groups = {group};
+    trace.size = {8, 1, 1};
+    list->trace_rays(trace);
+    list->dispatch({.pipeline = compute, .bind_groups = {group}});
+    list->trace_rays(trace);
+    device.submit(list)->wait();
+    const auto results = contents<std::uint32_t>(device, launch.buffers[1], 8);
+    for (std::uint32_t i = 0; i < 8; ++i)
+      check_equal(fmt::format("value {}", i), results[i], ((2 + i) * 3 + i) * 2 + i);
+  }
+}
+
+void several_sets(Context& context) {
+  // The ray generation shader uses sets 0 and 2, the miss shader sets 1 and 2.
+  const PipelineText text = {.ray_generation = {scene_declaration + payload_out + R"(
+layout(set = 2, binding = 3, std430) writeonly buffer Results { uint results[]; };
+layout(set = 2, binding = 0, std430) readonly buffer Shared { uint shared_word; };
+void main() {
+  payload = shared_word;
+  traceRayEXT(scene, 0u, 0xffu, 0u, 0u, 0u, vec3(-9.0, 0.25, 5.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0, 0);
+  results[0] = payload;
+}
+)"},
+                             .miss = {payload_in + R"(
+layout(set = 1, binding = 5, std140) uniform Uniforms { uvec4 numbers[2]; };
+layout(set = 2, binding = 0, std430) readonly buffer Shared { uint shared_word; };
+void main() { payload = payload * 1000u + numbers[1].z + shared_word; }
+)"}};
+  rhi::Device& device = context.device();
+  const auto pipeline = make_pipeline(context, text, "several sets");
+  const Scene scene = one_triangle(device);
+  Launch launch;
+  const auto results = buffer_of(device, std::vector<std::uint32_t>(1), "results");
+  const auto shared = buffer_of(device, std::vector<std::uint32_t>{7}, "shared");
+  const auto uniforms = buffer_of(device, std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 70, 8}, "uniforms");
+  rhi::BindGroupDesc groups[3];
+  groups[0].entries = {{.binding = 0, .resource = scene.top_level}};
+  groups[1].entries = {{.binding = 5, .resource = rhi::BufferRange{uniforms}}};
+  groups[2].entries = {{.binding = 0, .resource = rhi::BufferRange{shared}},
+                       {.binding = 3, .resource = rhi::BufferRange{results}}};
+  rhi::TraceRaysDesc trace;
+  trace.table = make_table(device, pipeline, launch);
+  for (std::uint32_t set = 3; set-- > 0;) {
+    groups[set].pipeline = pipeline;
+    groups[set].set = set;
+    groups[set].label = "several sets";
+    trace.bind_groups.push_back(device.create_bind_group(groups[set]));
+  }
+  const rhi::CommandListHandle list = device.create_command_list("several sets");
+  list->trace_rays(trace);
+  device.submit(list)->wait();
+  check_equal("the payload", contents<std::uint32_t>(device, results, 1)[0], 7077u);
+}
+
+void storage_image(Context& context) {
+  const PipelineText text = {
+      .ray_generation = {scene_declaration + R"(
+layout(set = 0, binding = 8, rgba32f) uniform writeonly image2D image;
+layout(location = 0) rayPayloadEXT vec3 color;
+void main() {
+  vec2 place = (vec2(gl_LaunchIDEXT.xy) + 0.5) / vec2(gl_LaunchSizeEXT.xy) * 2.0 - 0.5;
+  traceRayEXT(scene, 0u, 0xffu, 0u, 0u, 0u, vec3(place, 5.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0, 0);
+  imageStore(image, ivec2(gl_LaunchIDEXT.xy), vec4(color, 1.0));
+}
+)"},
+      .miss = {"layout(location = 0) rayPayloadInEXT vec3 color;\nvoid main() { color = vec3(-1.0); }\n"},
+      .hit_groups = {{.closest_hit = "layout(location = 0) rayPayloadInEXT vec3 color;\nhitAttributeEXT vec2 uv;\n"
+                                     "void main() { color = vec3(uv, gl_HitTEXT); }\n"}}};
+  rhi::Device& device = context.device();
+  constexpr std::uint32_t width = 20;
+  constexpr std::uint32_t height = 12;
+  const Scene scene = one_triangle(device);
+  Launch launch;
+  launch.scene = scene.top_level;
+  launch.textures = {device.create_texture(
+      {.format = rhi::TextureFormat::rgba32_float, .size = {width, height, 1}, .label = "image"})};
+  launch.trace.size = {width, height, 1};
+  run(device, make_pipeline(context, text, "image"), launch);
+  const auto texels = buffer_of(device, std::vector<float>(4 * width * height), "texels");
+  const rhi::CommandListHandle list = device.create_command_list("read image");
+  list->copy_from_texture(launch.textures[0], {texels});
+  device.submit(list);
+  const auto seen = contents<float>(device, texels, 4 * width * height);
+  for (std::uint32_t y = 0; y < height; ++y)
+    for (std::uint32_t x = 0; x < width; ++x) {
+      const double u = (x + 0.5) / width * 2.0 - 0.5;
+      const double v = (y + 0.5) / height * 2.0 - 0.5;
+      if (std::abs(u + v - 1.0) < 1e-3 || std::abs(u) < 1e-3 || std::abs(v) < 1e-3) continue;  // on the edge
+      const bool inside = u > 0 && v > 0 && u + v < 1;
+      const double expected[4] = {inside ? u : -1, inside ? v : -1, inside ? 5 : -1, 1};
+      for (std::uint32_t channel = 0; channel < 4; ++channel)
+        check_close(fmt::format("channel {} of texel ({}, {})", channel, x, y),
+                    static_cast<double>(seen[(y * width + x) * 4 + channel]), expected[channel], 1.0);
+    }
+}
+
+void buffer_reference_in_record(Context& context) {
+  // Each hit record holds the address of its geometry's data.
+  const PipelineText text = {
+      .ray_generation = {scene_declaration + results_declaration + payload_out + R"(
+void main() {
+  for (uint i = 0u; i < 3u; ++i) {
+    payload = 0u;
+    traceRayEXT(scene, 0u, 0xffu, 0u, 1u, 0u, vec3(0.25 + 2.0 * float(i), 0.25, 5.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0,
+                0);
+    results[i] = payload;
+  }
+}
+)"},
+      .miss = {payload_in + "void main() { payload = 1u; }\n"},
+      .hit_groups = {{.closest_hit = "#extension GL_EXT_buffer_reference : require\n" + payload_in + R"(
+layout(buffer_reference, std430) readonly buffer Numbers { uint numbers[]; };
+layout(shaderRecordEXT, std430) buffer Record { uint index; Numbers data; } record;
+void main() { payload = record.data.numbers[record.index]; }
+)"}}};
+  rhi::Device& device = context.device();
+  std::vector<rhi::Geometry> geometries;
+  for (int i = 0; i < 3; ++i)
+    geometries.emplace_back(triangles(device, triangle_at({static_cast<float>(2 * i), 0, 0})));
+  const Scene scene = build_scene(device, std::move(geometries));
+  struct Record {
+    std::uint32_t index;
+    std::uint32_t padding;
+    std::uint64_t address;
+  };
+  Launch launch;
+  launch.scene = scene.top_level;
+  std::vector<rhi::BufferHandle> numbers;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    numbers.push_back(buffer_of(device, std::vector<std::uint32_t>{10 * i, 10 * i + 1, 10 * i + 2}, "numbers"));
+    launch.hit.records.push_back(record_with(0, Record{i, 0, numbers.back()->device_address()}));
+  }
+  const auto results = results_of<std::uint32_t>(context, text, launch, 3, "buffer references");
+  for (std::uint32_t i = 0; i < 3; ++i) check_equal(fmt::format("the number of geometry {}", i), results[i], 11 * i);
+}
+
+}  // namespace
+
+void add_pipeline_launch_cases(Cases& cases) {
+  using Caps = rhi::Capabilities;
+  const Group launch{.cases = cases, .name = "ray_tracing_pipeline.launch", .needs = {&Caps::ray_tracing_pipeline}};
+  launch.add("size_1d", "a launch of one dimension runs every invocation once", [](Context& context) {
+    launch_of(context, {1021, 1, 1});
+  });
+  launch.add("size_2d", "a launch of two dimensions runs every invocation once", [](Context& context) {
+    launch_of(context, {67, 43, 1});
+  });
+  launch.add("size_3d", "a launch of three dimensions runs every invocation once", [](Context& context) {
+    launch_of(context, {13, 7, 11});
+  });
+  launch.add("size_flat", "a launch may have size 1 in its first dimensions", [](Context& context) {
+    launch_of(context, {1, 1, 301});
+  });
+  launch.add("size_zero", "a launch with a size of zero does nothing", size_zero);
+  launch.add("in_order", "each of several traces of a list sees what the one before it wrote", in_order);
+  const Group indirect_group{.cases = cases,
+                             .name = "ray_tracing_pipeline.indirect",
+                             .needs = {&Caps::ray_tracing_pipeline, &Caps::trace_rays_indirect}};
+  indirect_group.add("size_from_buffer", "an indirect launch has the size that is in the buffer", indirect);
+  indirect_group.add("size_zero", "an indirect launch with a size of zero does nothing", indirect_zero);
+  indirect_group.add("size_from_shader", "an indirect launch has the size that a shader wrote before",
+                     indirect_from_shader);
+  const Group resources{
+      .cases = cases, .name = "ray_tracing_pipeline.resources", .needs = {&Caps::ray_tracing_pipeline}};
+  resources.add("push_constants", "every stage reads the push constants that it declares", push_constants);
+  resources.add("specialization", "a specialisation constant reaches every stage that declares it", specialization);
+  resources.add("bind_group_with_compute", "a bind group serves compute and ray tracing pipelines alike",
+                bind_group_with_compute);
+  resources.add("several_sets", "stages use bind groups of several sets", several_sets);
+  resources.add("storage_image", "a ray generation shader writes a storage image", storage_image);
+  const Group references{.cases = cases,
+                         .name = "ray_tracing_pipeline.resources",
+                         .needs = {&Caps::ray_tracing_pipeline, &Caps::buffer_references}};
+  references.add("buffer_reference_in_record", "a shader record holds the address of a buffer",
+                 buffer_reference_in_record);
+}
+
+}  // namespace tandem::conformance
