@@ -51,9 +51,10 @@ void check_reports(Context& context, Reporter reporter, const CheckReport& check
   }
   probe.hit_groups = {group};
   const ProbeResult result = run(context, probe, "builtin");
+  const std::vector<Report>& reports = by_box ? result.intersections : result.reports;
   for (std::uint32_t i = 0; i < scene.hits.size(); ++i) {
-    check_equal(fmt::format("the shader that reports ray {}", i), result.reports[i].shader, expected_shader);
-    check_report(scene.hits[i], result.reports[i], i);
+    check_equal(fmt::format("the shader that reports ray {}", i), reports[i].shader, expected_shader);
+    check_report(scene.hits[i], reports[i], i);
   }
 }
 

@@ -324,7 +324,7 @@ void main() {
       const double v = (y + 0.5) / height * 2.0 - 0.5;
       if (std::abs(u + v - 1.0) < 1e-3 || std::abs(u) < 1e-3 || std::abs(v) < 1e-3) continue;  // on the edge
       const bool inside = u > 0 && v > 0 && u + v < 1;
-      const double expected[4] = {inside ? u : -1, inside ? v : -1, inside ? 5 : -1, 1};
+      const double expected[4] = {inside ? u : -1, inside ? v : -1, inside ? 5.0 : -1.0, 1.0};
       for (std::uint32_t channel = 0; channel < 4; ++channel)
         check_close(fmt::format("channel {} of texel ({}, {})", channel, x, y),
                     static_cast<double>(seen[(y * width + x) * 4 + channel]), expected[channel], 1.0);

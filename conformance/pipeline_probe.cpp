@@ -153,7 +153,7 @@ void main() {
 )";
 
 const std::string intersection_report = report_declaration + record_declaration + R"(
-layout(set = 0, binding = 2, std430) buffer Reports { Report reports[]; };
+layout(set = 0, binding = 6, std430) buffer Reports { Report reports[]; };
 void main() {
   Report report = reports[gl_LaunchIDEXT.x];
   report.shader = 4u;
@@ -184,15 +184,18 @@ ProbeResult run(Context& context, const Probe& probe, const std::string& label) 
   launch.scene = probe.scene;
   launch.buffers = {buffer_of(device, probe.rays, "rays"),
                     buffer_of(device, std::vector<Report>(probe.rays.size()), "reports"),
-                    buffer_of(device, decisions, "decisions"), buffer_of(device, plans, "plans"),
-                    buffer_of(device, std::vector<Outcome>(probe.rays.size() * outcomes_per_ray), "outcomes")};
+                    buffer_of(device, decisions, "decisions"),
+                    buffer_of(device, plans, "plans"),
+                    buffer_of(device, std::vector<Outcome>(probe.rays.size() * outcomes_per_ray), "outcomes"),
+                    buffer_of(device, std::vector<Report>(probe.rays.size()), "reports of intersection shaders")};
   launch.trace = probe.trace;
   launch.trace.size = {static_cast<std::uint32_t>(probe.rays.size()), 1, 1};
   launch.hit = probe.hit.records.empty() ? numbered_records(probe.hit_groups.size(), first_hit_word) : probe.hit;
   launch.miss = probe.miss.records.empty() ? numbered_records(probe.miss_count, first_miss_word) : probe.miss;
   run(device, make_pipeline(context, text, label), launch);
   return {.reports = contents<Report>(device, launch.buffers[1], probe.rays.size()),
-          .outcomes = contents<Outcome>(device, launch.buffers[4], probe.rays.size() * outcomes_per_ray)};
+          .outcomes = contents<Outcome>(device, launch.buffers[4], probe.rays.size() * outcomes_per_ray),
+          .intersections = contents<Report>(device, launch.buffers[5], probe.rays.size())};
 }
 
 }  // namespace tandem::conformance::pipeline

@@ -8,7 +8,8 @@
 #include "conformance/pipeline_program.hpp"
 
 /// Shaders that tell all they know of a ray and its hit: most cases are data for them. Bindings: 0 the scene, 1 rays, 2
-/// reports, 3 decisions, 4 plans, 5 outcomes.
+/// reports, 3 decisions, 4 plans, 5 outcomes, 6
+/// reports of intersection shaders.
 namespace tandem::conformance::pipeline {
 
 /// A traceRayEXT. Layout of the shaders' Ray, std430.
@@ -139,8 +140,9 @@ struct Probe {
 };
 
 struct ProbeResult {
-  std::vector<Report> reports = {};    ///< one for each ray
-  std::vector<Outcome> outcomes = {};  ///< outcomes_per_ray for each ray
+  std::vector<Report> reports = {};        ///< one for each ray
+  std::vector<Outcome> outcomes = {};      ///< outcomes_per_ray for each ray
+  std::vector<Report> intersections = {};  ///< one for each ray, by probe::intersection_report
 };
 
 ProbeResult run(Context& context, const Probe& probe, const std::string& label);

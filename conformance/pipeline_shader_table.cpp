@@ -219,7 +219,7 @@ void data_of_hit_group(Context& context) {
   check_equal("the word that the closest-hit shader read", hit.record, 0x40u);
   check_equal("the word that the any-hit shader read", hit.any_hit_records, 0x40u);
   probe.hit_groups[0] = {.intersection = probe::intersection_report};
-  const Report box = run(context, probe, "shader table").reports[0];
+  const Report box = run(context, probe, "shader table").intersections[0];
   check_equal("the word that the intersection shader read", box.record, 0x40u);
 }
 
