@@ -26,6 +26,7 @@ std::vector<DriverBug> parse_driver_bugs(std::string_view json) {
   std::vector<DriverBug> bugs;
   for (const nlohmann::json& entry : entries) {
     bugs.push_back({.driver = member(entry, "driver"),
+                    .version = member(entry, "version"),
                     .name = member(entry, "case"),
                     .failure = member(entry, "failure"),
                     .reason = member(entry, "reason"),
@@ -41,9 +42,13 @@ const std::vector<DriverBug>& known_driver_bugs() {
 
 const DriverBug* find_driver_bug(std::span<const DriverBug> bugs, std::string_view driver, std::string_view case_name) {
   const auto found = std::find_if(bugs.begin(), bugs.end(), [&](const DriverBug& bug) {
-    return driver.starts_with(bug.driver) && bug.name == case_name;
+    return driver.starts_with(bug.driver + ' ') && bug.name == case_name;
   });
   return found == bugs.end() ? nullptr : &*found;
+}
+
+bool is_seen_version(const DriverBug& bug, std::string_view driver) {
+  return driver.starts_with(bug.driver + ' ' + bug.version);
 }
 
 }  // namespace tandem::conformance

@@ -157,7 +157,7 @@ void add_pipeline_against_query_cases(Cases& cases) {
   group.add("same_hits_ignoring", "both forms find the same hits behind candidates that are ignored",
             [odd](Context& context) { compare_forms(context, rhi::GeometryFlags::none, 0, odd); });
   group.add("same_hits_culling", "both forms leave out the same faces", [odd](Context& context) {
-    compare_forms(context, rhi::GeometryFlags::none, pipeline::ray_flags::cull_back, odd);
+    compare_forms(context, rhi::GeometryFlags::none, ray_flags::cull_back_facing, odd);
   });
 }
 

@@ -69,7 +69,7 @@ void terminate(Context& context) {
 void terminate_and_skip_closest_hit(Context& context) {
   StackProbe probe = triangle_stack(context.device(), 3);
   probe.decisions = std::vector<Decision>(3, Decision::terminate);
-  probe.rays[0].flags = ray_flags::skip_closest_hit;
+  probe.rays[0].flags = ray_flags::skip_closest_hit_shader;
   const Report report = run_one(context, probe);
   check_equal("any-hit invocations", report.any_hits, 1);
   check_equal("the shader that ran last", report.shader, reporter::none);

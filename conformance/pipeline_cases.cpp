@@ -12,6 +12,7 @@ void add_pipeline_cases(Cases& cases) {
   add_pipeline_recursion_cases(cases);
   add_pipeline_callable_cases(cases);
   add_pipeline_launch_cases(cases);
+  add_pipeline_resource_cases(cases);
   add_pipeline_against_query_cases(cases);
   add_pipeline_watertightness_cases(cases);
 }

@@ -14,6 +14,7 @@ void add_pipeline_payload_cases(Cases& cases);
 void add_pipeline_recursion_cases(Cases& cases);
 void add_pipeline_callable_cases(Cases& cases);
 void add_pipeline_launch_cases(Cases& cases);
+void add_pipeline_resource_cases(Cases& cases);
 void add_pipeline_against_query_cases(Cases& cases);
 void add_pipeline_watertightness_cases(Cases& cases);
 

@@ -181,7 +181,7 @@ void terminate_on_first_hit(Context& context) {
 
 void skip_closest_hit(Context& context) {
   StackProbe probe = box_stack(context.device(), {plan_of({{6, 1}})});
-  probe.rays[0].flags = ray_flags::skip_closest_hit;
+  probe.rays[0].flags = ray_flags::skip_closest_hit_shader;
   const ProbeResult result = run_probe(context, probe);
   check_equal("the return value of reportIntersectionEXT", result.outcomes[0].accepted, 1);
   check_equal("the shader that ran last", result.reports[0].shader, reporter::none);

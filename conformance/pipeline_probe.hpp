@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "conformance/pipeline_program.hpp"
+#include "conformance/ray_flags.hpp"
 
 /// Shaders that tell all they know of a ray and its hit: most cases are data for them. Bindings: 0 the scene, 1 rays, 2
 /// reports, 3 decisions, 4 plans, 5 outcomes, 6
@@ -26,20 +27,6 @@ struct TracedRay {
   std::uint32_t padding[3] = {};
 };
 static_assert(sizeof(TracedRay) == 64);
-
-/// gl_RayFlags*EXT.
-namespace ray_flags {
-inline constexpr std::uint32_t opaque = 1;
-inline constexpr std::uint32_t no_opaque = 2;
-inline constexpr std::uint32_t terminate_on_first_hit = 4;
-inline constexpr std::uint32_t skip_closest_hit = 8;
-inline constexpr std::uint32_t cull_back = 16;
-inline constexpr std::uint32_t cull_front = 32;
-inline constexpr std::uint32_t cull_opaque = 64;
-inline constexpr std::uint32_t cull_no_opaque = 128;
-inline constexpr std::uint32_t skip_triangles = 256;
-inline constexpr std::uint32_t skip_boxes = 512;
-}  // namespace ray_flags
 
 /// Report::shader.
 namespace reporter {

@@ -16,7 +16,7 @@ Report run_one(Context& context, const Probe& probe) { return run(context, probe
 
 void skip_closest_hit(Context& context) {
   StackProbe probe = triangle_stack(context.device(), 1, GeometryFlags::opaque);
-  probe.rays = {through_stack(ray_flags::skip_closest_hit), through_stack(ray_flags::skip_closest_hit)};
+  probe.rays = {through_stack(ray_flags::skip_closest_hit_shader), through_stack(ray_flags::skip_closest_hit_shader)};
   probe.rays[1].origin.x = 50;
   const ProbeResult result = run(context, probe, "ray flags");
   check_equal("the shader that ran for a hit", result.reports[0].shader, reporter::none);
@@ -26,7 +26,7 @@ void skip_closest_hit(Context& context) {
 void skip_closest_hit_runs_any_hit(Context& context) {
   StackProbe probe = triangle_stack(context.device(), 2);
   probe.decisions = {Decision::ignore, Decision::ignore};
-  probe.rays[0].flags = ray_flags::skip_closest_hit;
+  probe.rays[0].flags = ray_flags::skip_closest_hit_shader;
   const Report report = run_one(context, probe);
   check_missed(report);
   check_equal("the primitives offered, as bits", report.any_hit_primitives, 3u);
@@ -43,7 +43,8 @@ void terminate_on_first_hit(Context& context) {
 void shadow_ray(Context& context) {
   // The usual shadow ray: only the miss shader says anything.
   StackProbe probe = triangle_stack(context.device(), 2, GeometryFlags::opaque);
-  const std::uint32_t flags = ray_flags::terminate_on_first_hit | ray_flags::skip_closest_hit | ray_flags::opaque;
+  const std::uint32_t flags =
+      ray_flags::terminate_on_first_hit | ray_flags::skip_closest_hit_shader | ray_flags::opaque;
   probe.rays = {through_stack(flags), through_stack(flags), through_stack(flags)};
   probe.rays[1].t_max = 4.5F;
   probe.rays[2].origin.y = -3;
@@ -65,21 +66,21 @@ struct Facing {
 };
 constexpr Facing facings[] = {
     {"cull_back_faces_back", "the ray flag cull-back-facing-triangles leaves out back faces", false,
-     ray_flags::cull_back, InstanceFlags::none, false, 0},
-    {"cull_back_faces_front", "the ray flag cull-back-facing-triangles leaves front faces", true, ray_flags::cull_back,
-     InstanceFlags::none, true, 0xFE},
+     ray_flags::cull_back_facing, InstanceFlags::none, false, 0},
+    {"cull_back_faces_front", "the ray flag cull-back-facing-triangles leaves front faces", true,
+     ray_flags::cull_back_facing, InstanceFlags::none, true, 0xFE},
     {"cull_front_faces_back", "the ray flag cull-front-facing-triangles leaves back faces", false,
-     ray_flags::cull_front, InstanceFlags::none, true, 0xFF},
+     ray_flags::cull_front_facing, InstanceFlags::none, true, 0xFF},
     {"cull_front_faces_front", "the ray flag cull-front-facing-triangles leaves out front faces", true,
-     ray_flags::cull_front, InstanceFlags::none, false, 0},
+     ray_flags::cull_front_facing, InstanceFlags::none, false, 0},
     {"flip_facing_kind", "an instance that flips facing makes front faces back faces", true, 0,
      InstanceFlags::triangle_flip_facing, true, 0xFF},
     {"flip_facing_cull", "an instance that flips facing has its back faces left out as such", true,
-     ray_flags::cull_back, InstanceFlags::triangle_flip_facing, false, 0},
-    {"facing_cull_disable_back", "an instance without facing culling keeps its back faces", false, ray_flags::cull_back,
-     InstanceFlags::triangle_facing_cull_disable, true, 0xFF},
+     ray_flags::cull_back_facing, InstanceFlags::triangle_flip_facing, false, 0},
+    {"facing_cull_disable_back", "an instance without facing culling keeps its back faces", false,
+     ray_flags::cull_back_facing, InstanceFlags::triangle_facing_cull_disable, true, 0xFF},
     {"facing_cull_disable_front", "an instance without facing culling keeps its front faces", true,
-     ray_flags::cull_front, InstanceFlags::triangle_facing_cull_disable, true, 0xFE},
+     ray_flags::cull_front_facing, InstanceFlags::triangle_facing_cull_disable, true, 0xFE},
 };
 
 void check_facing(Context& context, const Facing& facing) {

@@ -8,26 +8,12 @@
 #include <vector>
 
 #include "conformance/context.hpp"
+#include "conformance/ray_flags.hpp"
 #include "conformance/scene.hpp"
 
 /// One shader that traces rays with ray queries and records everything that it can ask of them. What it does with
 /// candidates is data, so that most cases share it.
 namespace tandem::conformance {
-
-/// gl_RayFlags*EXT
-namespace ray_flags {
-inline constexpr std::uint32_t none = 0;
-inline constexpr std::uint32_t opaque = 0x01;
-inline constexpr std::uint32_t no_opaque = 0x02;
-inline constexpr std::uint32_t terminate_on_first_hit = 0x04;
-inline constexpr std::uint32_t skip_closest_hit_shader = 0x08;
-inline constexpr std::uint32_t cull_back_facing = 0x10;
-inline constexpr std::uint32_t cull_front_facing = 0x20;
-inline constexpr std::uint32_t cull_opaque = 0x40;
-inline constexpr std::uint32_t cull_no_opaque = 0x80;
-inline constexpr std::uint32_t skip_triangles = 0x100;
-inline constexpr std::uint32_t skip_boxes = 0x200;
-}  // namespace ray_flags
 
 /// gl_RayQueryCandidateIntersection*EXT
 namespace candidate_type {

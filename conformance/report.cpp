@@ -65,7 +65,7 @@ std::string cell(const Counts& counts) {
   };
   add(counts.get(Status::passed), "passed");
   add(counts.wrong(), "**failed**");
-  add(counts.get(Status::driver_bug), "driver bugs");
+  add(counts.get(Status::driver_bug), counts.get(Status::driver_bug) == 1 ? "driver bug" : "driver bugs");
   add(counts.get(Status::unsupported), "unsupported");
   return cell.empty() ? "-" : cell;
 }
@@ -186,8 +186,8 @@ std::string catalogue(std::span<const Case> cases, std::span<const DriverBug> dr
   if (driver_bugs.empty()) text += "None.\n";
   if (!driver_bugs.empty()) text += "| driver | case | what is wrong | evidence |\n|---|---|---|---|\n";
   for (const DriverBug& bug : driver_bugs)
-    text += fmt::format("| {} | {} | {} | {} |\n", in_table(bug.driver), bug.name, in_table(bug.reason),
-                        in_table(bug.evidence));
+    text += fmt::format("| {} | {} | {} | {} |\n", in_table(bug.driver + " " + bug.version), bug.name,
+                        in_table(bug.reason), in_table(bug.evidence));
   text += fmt::format("\n## The {} cases\n", cases.size());
   for (const std::string_view group : groups_of(cases)) {
     text += fmt::format("\n### {}\n\n| case | what must be true |\n|---|---|\n", group);

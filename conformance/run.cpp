@@ -42,15 +42,15 @@ Result run_body(const Case& test, Context& context, const RunOptions& options) {
   return result;
 }
 
-void compare_with_known_bug(Result& result, const DriverBug& bug) {
+void compare_with_known_bug(Result& result, const DriverBug& bug, const std::string& driver) {
   const bool wrong = result.status == Status::failed || result.status == Status::error;
   if (wrong && result.sentence.find(bug.failure) != std::string::npos) {
     result.status = Status::driver_bug;
   } else if (wrong) {
     result.sentence += fmt::format(" (the known driver bug says '{}')", bug.failure);
-  } else if (result.status == Status::passed) {
+  } else if (result.status == Status::passed && is_seen_version(bug, driver)) {
     result.status = Status::unexpected_pass;
-    result.sentence = fmt::format("passes, but is listed as a bug of {}: {}", bug.driver, bug.reason);
+    result.sentence = fmt::format("passes, but is listed as a bug of {} {}: {}", bug.driver, bug.version, bug.reason);
   }
 }
 
@@ -80,7 +80,7 @@ DeviceReport run(rhi::Device& device, std::span<const Case> cases, const RunOpti
   for (const Case& test : cases) {
     Result result = run_body(test, context, options);
     const DriverBug* const bug = find_driver_bug(options.driver_bugs, report.device.driver, test.name);
-    if (bug != nullptr) compare_with_known_bug(result, *bug);
+    if (bug != nullptr) compare_with_known_bug(result, *bug, report.device.driver);
     report.results.push_back(std::move(result));
     if (options.on_result) options.on_result(report.results.back());
   }

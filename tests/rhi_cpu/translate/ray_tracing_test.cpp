@@ -10,10 +10,8 @@
 
 #include <doctest/doctest.h>
 
-#include "rhi/error.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
-#include "rhi_cpu/translate/translate.hpp"
-#include "tests/rhi_cpu/translate/kernel_harness.hpp"
+#include "tests/rhi_cpu/translate/recording_host.hpp"
 
 namespace {
 
@@ -21,89 +19,15 @@ namespace kernel = tandem::kernel;
 using kernel::HitDecision;
 using kernel::ShaderCall;
 using tandem::rhi::ShaderStage;
+using tandem::test::call_of;
 using tandem::test::Kernel;
+using tandem::test::kernels;
+using tandem::test::RecordingHost;
 using tandem::test::resource;
 using tandem::test::traced_spirv;
 
-/// A shader of one stage, from the module as glslang writes it and from an optimised one.
-std::array<std::unique_ptr<Kernel>, 2> kernels(const std::string& glsl, ShaderStage stage) {
-  const std::vector<std::uint32_t> spirv = traced_spirv(glsl, stage);
-  std::array<std::unique_ptr<Kernel>, 2> result;
-  for (const bool optimize : {false, true}) {
-    tandem::test::KernelOptions options;
-    options.optimize = optimize;
-    result[optimize] = std::make_unique<Kernel>(spirv, options);
-  }
-  return result;
-}
-
 std::byte* bytes_of(const kernel::TopLevel& scene) {
   return const_cast<std::byte*>(reinterpret_cast<const std::byte*>(&scene));
-}
-
-/// What shaders called, as the host sees it.
-struct Host {
-  struct Trace {
-    const kernel::TopLevel* scene;
-    kernel::Ray ray;
-    std::uint32_t sbt_record_offset, sbt_record_stride, miss_index, payload_size;
-  };
-  struct Report {
-    float t;
-    std::uint32_t hit_kind;
-    std::array<float, 8> attributes;
-  };
-  std::vector<Trace> traces;
-  std::vector<std::uint32_t> callable_indices;
-  std::vector<std::uint32_t> data_sizes;
-  std::vector<Report> reports;
-  const Kernel* hit_shader = nullptr;       ///< what trace_ray runs
-  const Kernel* callable_shader = nullptr;  ///< what execute_callable runs
-  const kernel::Hit* hit = nullptr;
-  float terminating_t = -1;  ///< a report of it ends the intersection shader
-};
-
-Host& host_of(ShaderCall& call) { return *static_cast<Host*>(call.host); }
-
-void trace_ray(ShaderCall& caller, const kernel::TopLevel* scene, const kernel::Ray& ray, std::uint32_t offset,
-               std::uint32_t stride, std::uint32_t miss_index, void* payload, std::uint32_t payload_size) {
-  Host& host = host_of(caller);
-  host.traces.push_back({scene, ray, offset, stride, miss_index, payload_size});
-  if (host.hit_shader == nullptr) return;
-  ShaderCall call = caller;
-  call.payload = payload;
-  call.payload_size = payload_size;
-  call.ray = &ray;
-  call.hit = host.hit;
-  host.hit_shader->call(call);
-}
-
-void execute_callable(ShaderCall& caller, std::uint32_t index, void* data, std::uint32_t data_size) {
-  Host& host = host_of(caller);
-  host.callable_indices.push_back(index);
-  host.data_sizes.push_back(data_size);
-  ShaderCall call = caller;
-  call.payload = data;
-  call.payload_size = data_size;
-  if (host.callable_shader != nullptr) host.callable_shader->call(call);
-}
-
-bool report_intersection(ShaderCall& caller, float t, std::uint32_t hit_kind) {
-  Host& host = host_of(caller);
-  Host::Report report = {t, hit_kind, {}};
-  std::memcpy(report.attributes.data(), caller.hit_attributes, sizeof(report.attributes));
-  host.reports.push_back(report);
-  caller.decision = t == host.terminating_t ? HitDecision::terminate : HitDecision::accept;
-  return t < 5;
-}
-
-constexpr kernel::PipelineFunctions functions = {trace_ray, execute_callable, report_intersection};
-
-ShaderCall call_of(Host& host) {
-  ShaderCall call;
-  call.functions = &functions;
-  call.host = &host;
-  return call;
 }
 
 TEST_CASE("a ray generation shader has its launch, resources, constants and record, and passes on its operands") {
@@ -137,7 +61,7 @@ TEST_CASE("a ray generation shader has its launch, resources, constants and reco
     record[18] = 9;
     const std::array<std::uint32_t, 4> constants = {0x3f800000, 0x40000000, 0x40400000, 0x11};
     const kernel::Resource resources[] = {{bytes_of(scenes[0]), 0}, {bytes_of(scenes[1]), 0}, resource(result)};
-    Host host;
+    RecordingHost host;
     ShaderCall call = call_of(host);
     call.resources = resources;
     call.push_constants = reinterpret_cast<const std::byte*>(constants.data());
@@ -148,7 +72,7 @@ TEST_CASE("a ray generation shader has its launch, resources, constants and reco
     call.launch_size[2] = 14;
     shader->call(call);
     REQUIRE(host.traces.size() == 1);
-    const Host::Trace& trace = host.traces[0];
+    const RecordingHost::Trace& trace = host.traces[0];
     CHECK(trace.scene == &scenes[1]);
     CHECK(trace.ray.flags == 0x11);
     CHECK(trace.ray.mask == 0xff);          // 8 bits
@@ -206,7 +130,7 @@ TEST_CASE("a payload has one layout in every module, with nested structures, arr
     for (const auto& callee : called) {
       std::vector<float> result(10);
       const kernel::Resource resources[] = {{bytes_of(scene), 0}, resource(result)};
-      Host host;
+      RecordingHost host;
       host.hit_shader = callee.get();
       ShaderCall call = call_of(host);
       call.resources = resources;
@@ -264,7 +188,7 @@ TEST_CASE("a closest-hit shader knows its hit, its instance and its ray") {
     CHECK(shader->info().payload_size == 240);
     std::array<float, 60> result = {};
     alignas(16) std::array<float, 8> attributes = {0.25f, 0.5f};
-    Host host;
+    RecordingHost host;
     ShaderCall call = call_of(host);
     call.payload = result.data();
     call.payload_size = sizeof(result);
@@ -305,7 +229,7 @@ struct AnyHit {
     for (const auto& shader : shaders) {
       CAPTURE(x);
       std::array<float, 2> payload = {x, 0};
-      Host host;
+      RecordingHost host;
       ShaderCall call = call_of(host);
       alignas(16) std::array<float, 8> attributes = {x};
       call.payload = payload.data();
@@ -389,7 +313,7 @@ TEST_CASE("an intersection shader reports hits with their attributes and ends wh
   for (const auto& shader : shaders) {
     CHECK(shader->info().stage == kernel::Stage::intersection);
     CHECK(shader->info().payload_size == 0);
-    const auto run = [&](float terminating_t, Host& host) {
+    const auto run = [&](float terminating_t, RecordingHost& host) {
       std::vector<float> result(7);
       const kernel::Resource resources[] = {resource(result)};
       alignas(16) std::array<float, 8> attributes = {};
@@ -403,7 +327,7 @@ TEST_CASE("an intersection shader reports hits with their attributes and ends wh
       shader->call(call);
       return result;
     };
-    Host host;
+    RecordingHost host;
     CHECK(run(-1, host) == std::vector<float>{1, 1, 6, 0, 1, 1, 1});
     REQUIRE(host.reports.size() == 3);
     CHECK(host.reports[1].t == 9);
@@ -414,7 +338,7 @@ TEST_CASE("an intersection shader reports hits with their attributes and ends wh
     std::int32_t kind;
     std::memcpy(&kind, &host.reports[1].attributes[3], sizeof(kind));
     CHECK(kind == 108);
-    Host in_function, in_main;
+    RecordingHost in_function, in_main;
     CHECK(run(9, in_function) == std::vector<float>{1, 1, 6, 0, 0, 0, 0});
     CHECK(in_function.reports.size() == 2);
     CHECK(run(2, in_main) == std::vector<float>{1, 1, 6, 0, 1, 0, 0});
@@ -447,7 +371,7 @@ TEST_CASE("miss and callable shaders change what they are given, and trace and c
     CHECK(misses[i]->info().payload_size == 16);
     CHECK(callables[i]->info().payload_size == 8);
     CHECK(callables[i]->info().stage == kernel::Stage::callable);
-    Host host;
+    RecordingHost host;
     host.callable_shader = callables[i].get();
     std::array<float, 4> payload = {10, 0, 0, 0};
     ShaderCall call = call_of(host);
@@ -463,20 +387,6 @@ TEST_CASE("miss and callable shaders change what they are given, and trace and c
     CHECK(host.traces[0].miss_index == 1);
     CHECK(host.traces[0].ray.origin[2] == 3);
   }
-}
-
-TEST_CASE("what a ray tracing stage cannot have is named") {
-  const auto check = [](const std::string& glsl, ShaderStage stage, const std::string& what) {
-    try {
-      tandem::cpu::translate(traced_spirv(glsl, stage), "a label");
-      FAIL_CHECK("translated");
-    } catch (const tandem::rhi::Error& error) {
-      CHECK(error.code() == tandem::rhi::ErrorCode::unsupported);
-      CHECK(std::string(error.what()).find(what) != std::string::npos);
-    }
-  };
-  check("hitAttributeEXT float big[9]; void main() { big[8] = 1.0; reportIntersectionEXT(big[8], 0); }",
-        ShaderStage::intersection, "a hit attribute of 36 bytes, which is more than 32, is not supported");
 }
 
 }  // namespace

@@ -143,4 +143,11 @@ TEST_CASE("cutting a module short at any word is an error, never a crash") {
     CHECK_THROWS_AS(tandem::cpu::translate({words.data(), length}, "cut"), Error);
 }
 
+TEST_CASE("what a ray tracing stage cannot have is named") {
+  check_refused(tandem::test::traced_spirv(
+                    "hitAttributeEXT float big[9]; void main() { big[8] = 1.0; reportIntersectionEXT(big[8], 0); }",
+                    tandem::rhi::ShaderStage::intersection),
+                ErrorCode::unsupported, "a hit attribute of 36 bytes, which is more than 32, is not supported");
+}
+
 }  // namespace
