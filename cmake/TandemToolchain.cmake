@@ -22,6 +22,8 @@ set(TANDEM_FLOATING_POINT_OPTIONS -ffp-contract=off -fno-fast-math)
 if(TANDEM_SANITIZE)
   # Debian's glslang has no type information, which the check of virtual calls (vptr) needs of every class.
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  # What the sanitizers insert makes g++ see uninitialised members of variants where there are none.
+  add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   add_link_options(-fsanitize=address,undefined)
 endif()
 

@@ -287,11 +287,48 @@ void main() {{
                   place == (varies ? i % count : 2) ? 1u : 0u);
 }
 
+/// Structures that no descriptor names.
+void check_addresses(Context& context) {
+  constexpr std::uint32_t count = 2;
+  std::vector<Scene> scenes;
+  std::vector<std::uint64_t> addresses;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    scenes.push_back(columns(context.device(), 1, 100 * static_cast<float>(k)));
+    addresses.push_back(scenes.back().top_level->device_address());
+  }
+  const rhi::BufferHandle buffer = buffer_of(context.device(), addresses, "addresses");
+  const std::string source = R"(#version 460
+#extension GL_EXT_ray_query : require
+layout(local_size_x = 32) in;
+layout(set = 0, binding = 0, std430) readonly buffer Addresses { uvec2 addresses[]; };
+layout(set = 0, binding = 1, std430) writeonly buffer Results { uvec4 results[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uvec4 answer = uvec4(0u);
+  for (uint place = 0u; place < 2u; ++place) {
+    rayQueryEXT query;
+    rayQueryInitializeEXT(query, accelerationStructureEXT(addresses[i % 2u]), gl_RayFlagsOpaqueEXT, 0xffu,
+                          vec3(100.0 * float(place) + 0.25, 0.25, 5.0), 0.0, vec3(0.0, 0.0, -1.0), 100.0);
+    rayQueryProceedEXT(query);
+    answer[place] = rayQueryGetIntersectionTypeEXT(query, true);
+  }
+  results[i] = answer;
+}
+)";
+  const std::vector<Answer> seen =
+      run_shader(context, source, "structures by address", {{.binding = 0, .resource = rhi::BufferRange{buffer}}});
+  for (std::uint32_t i = 0; i < invocation_count; ++i)
+    for (std::uint32_t place = 0; place < count; ++place)
+      check_equal(fmt::format("whether invocation {} hits at place {}", i, place), seen[i][place],
+                  place == i % count ? 1u : 0u);
+}
+
 void add_structure_cases(Cases& cases) {
   using rhi::Capabilities;
   const Group uniform = {cases, "ray_query.structures"};
   uniform.add("array", "a structure may be chosen from an array by a constant",
               [](Context& context) { check_array(context, "array of structures", "2"); });
+  uniform.add("address", "a structure may be named by its address alone", check_addresses);
   const Group non_uniform = {
       cases, "ray_query.structures", {&Capabilities::ray_query, &Capabilities::non_uniform_indexing}};
   non_uniform.add("array_non_uniform", "each invocation may choose another structure of an array",

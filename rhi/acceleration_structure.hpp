@@ -128,7 +128,8 @@ class AccelerationStructure {
   Level level() const noexcept { return level_; }
   const std::string& label() const noexcept { return label_; }
 
-  /// For InstanceDesc::blas_address. Never 0.
+  /// Never 0. Of a bottom level for InstanceDesc::blas_address, of a top level for accelerationStructureEXT(address) in
+  /// a shader: it has to be built, and the caller keeps it alive.
   virtual std::uint64_t device_address() const = 0;
   virtual AccelerationStructureSizes sizes() const = 0;
 

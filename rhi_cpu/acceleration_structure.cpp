@@ -141,7 +141,12 @@ TopLevelStructure::TopLevelStructure(DeviceStateHandle device, const rhi::TopLev
   created_from_.instances = {};
 }
 
-std::uint64_t TopLevelStructure::device_address() const { return reinterpret_cast<std::uintptr_t>(this); }
+std::uint64_t TopLevelStructure::device_address() const { return reinterpret_cast<std::uintptr_t>(&addressed_); }
+
+void TopLevelStructure::set_built(std::shared_ptr<const BuiltTopLevel> built) {
+  built_ = std::move(built);
+  addressed_.top_level = view();
+}
 
 rhi::AccelerationStructureSizes TopLevelStructure::sizes() const { return sizes_of(built_, *device_); }
 
@@ -162,8 +167,8 @@ void TopLevelStructure::build(const rhi::TopLevelDesc& desc) {
     named.emplace(address, found.built);
   }
   const auto lookup = [&named](std::uint64_t address) { return named.at(address).get(); };
-  built_ =
-      std::make_shared<const BuiltTopLevel>(device_->tracer.build_top_level(instances, lookup, desc.flags, label()));
+  set_built(
+      std::make_shared<const BuiltTopLevel>(device_->tracer.build_top_level(instances, lookup, desc.flags, label())));
 }
 
 void TopLevelStructure::update(const rhi::TopLevelDesc& desc) {
@@ -177,7 +182,7 @@ void TopLevelStructure::update(const rhi::TopLevelDesc& desc) {
 std::shared_ptr<TopLevelStructure> TopLevelStructure::compacted(std::string label) const {
   require_source(built_ != nullptr, AccelerationStructure::label(), label);
   auto copy = std::make_shared<TopLevelStructure>(device_, relabelled(created_from_, std::move(label)));
-  copy->built_ = built_;
+  copy->set_built(built_);
   copy->is_compacted_ = true;
   return copy;
 }

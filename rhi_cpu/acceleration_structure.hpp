@@ -69,7 +69,10 @@ class TopLevelStructure final : public rhi::AccelerationStructure {
  private:
   DeviceStateHandle device_;
   rhi::TopLevelDesc created_from_;
+  void set_built(std::shared_ptr<const BuiltTopLevel> built);
+
   std::shared_ptr<const BuiltTopLevel> built_;  ///< null as long as it is not built
+  kernel::AddressedTopLevel addressed_;         ///< what device_address() points at
   bool is_compacted_ = false;
 };
 

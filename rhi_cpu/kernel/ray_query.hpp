@@ -25,6 +25,16 @@ struct accelerationStructureEXT {
   const TopLevel* top_level = nullptr;
 };
 
+/// accelerationStructureEXT(address): the address is AccelerationStructure::device_address() of a top level, or 0.
+inline accelerationStructureEXT structure_at(std::uint64_t address) {
+  return {address != 0 ? reinterpret_cast<const AddressedTopLevel*>(address)->top_level : nullptr};
+}
+
+/// The same with the address as two words, the lower first.
+inline accelerationStructureEXT structure_at(uvec2 address) {
+  return structure_at(std::bit_cast<std::uint64_t>(address));
+}
+
 /// What rayQueryGetIntersectionTypeEXT returns of the committed hit.
 inline constexpr uint committed_intersection_none = 0;
 inline constexpr uint committed_intersection_triangle = 1;

@@ -119,4 +119,9 @@ inline bool can_meet_candidates(const TopLevel& scene, std::uint32_t flags) {
   return (flags & ray_flag_no_opaque) != 0 || !scene.all_opaque;
 }
 
+/// What the device address of a top level points at: the structure as it was built last, or null.
+struct AddressedTopLevel {
+  const TopLevel* top_level = nullptr;
+};
+
 }  // namespace tandem::kernel

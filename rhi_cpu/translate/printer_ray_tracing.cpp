@@ -136,6 +136,8 @@ void Printer::print_shader_call() {
 
 void Printer::print_ray_tracing(spv::Op op, Operands ops) {
   switch (op) {
+    case spv::OpConvertUToAccelerationStructureKHR:
+      return define(ops[0], ops[1], fmt::format("k::structure_at({})", value_unsigned(ops[2])));
     case spv::OpTraceRayKHR:
       statement(fmt::format("k::traceRayEXT(shader_call, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {});", value(ops[0]),
                             value_unsigned(ops[1]), value_unsigned(ops[2]), value_unsigned(ops[3]),

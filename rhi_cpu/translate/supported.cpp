@@ -139,6 +139,7 @@ constexpr spv::Op instructions[] = {
     // conversions
     spv::OpConvertFToU, spv::OpConvertFToS, spv::OpConvertSToF, spv::OpConvertUToF, spv::OpUConvert, spv::OpSConvert,
     spv::OpFConvert, spv::OpBitcast, spv::OpConvertPtrToU, spv::OpConvertUToPtr,
+    spv::OpConvertUToAccelerationStructureKHR,
     // arithmetic
     spv::OpSNegate, spv::OpFNegate, spv::OpIAdd, spv::OpFAdd, spv::OpISub, spv::OpFSub, spv::OpIMul, spv::OpFMul,
     spv::OpUDiv, spv::OpSDiv, spv::OpFDiv, spv::OpUMod, spv::OpSRem, spv::OpSMod, spv::OpFRem, spv::OpFMod,
