@@ -47,7 +47,8 @@ kernel::Ray beside(kernel::Ray ray, int side) {
   return ray;
 }
 
-/// Corrects t and barycentrics of `hit` to those of the ray. False if it clearly passes by the triangle.
+/// Corrects t and barycentrics of `hit` to those of the ray. False if the ray clearly passes by the triangle, or is not
+/// at one of its vertices: along edges Embree is right, and a ray that just misses an outer edge has met nothing.
 bool meets_triangle(const TopLevelScene& scene, const kernel::Ray& ray, kernel::Hit& hit) {
   const kernel::Instance& instance = scene.instances[hit.instance_index];
   RTCScene level = scene.traits[hit.instance_index].bottom_level->scene.get();
@@ -66,6 +67,7 @@ bool meets_triangle(const TopLevelScene& scene, const kernel::Ray& ray, kernel::
   // The moment about the edge across from each corner: the weights of the corners, but for a factor.
   Vector moments;
   bool may_be_positive = true, may_be_negative = true;
+  int edges_within_rounding = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector& a = corners[(i + 1) % 3];
     const Vector& b = corners[(i + 2) % 3];
@@ -73,8 +75,9 @@ bool meets_triangle(const TopLevelScene& scene, const kernel::Ray& ray, kernel::
     const double error = moment_error * length(b - a) * (length(a) + length(b)) * length(direction);
     may_be_positive = may_be_positive && moments[i] >= -error;
     may_be_negative = may_be_negative && moments[i] <= error;
+    edges_within_rounding += std::abs(moments[i]) <= error ? 1 : 0;
   }
-  if (!may_be_positive && !may_be_negative) return false;
+  if ((!may_be_positive && !may_be_negative) || edges_within_rounding < 2) return false;
   const Vector normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const double t = dot(corners[0], normal) / dot(direction, normal);
   if (!(t > double{ray.t_min} && t < double{ray.t_max})) return false;
