@@ -121,12 +121,39 @@ std::vector<TracedRay> neighbours(const TracedRay& ray, double distance, double 
   return rays;
 }
 
-/// Whether the ray meets `triangle`, or passes it, within `distance` of where it exactly meets `exact`.
-bool meets_beside(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32_t triangle, std::uint32_t exact,
-                  double distance) {
-  if (triangle >= scene.triangles.size() || exact >= scene.triangles.size()) return false;
-  const std::optional<glm::dvec3> hit = point_in_plane(ray, corners_of(scene, exact));
-  return hit && glm::distance(closest_point(corners_of(scene, triangle), *hit), *hit) <= distance;
+/// The points of a ray, from its origin on, and of a segment that are closest to each other.
+std::pair<glm::dvec3, glm::dvec3> closest_points(const TracedRay& ray, const glm::dvec3& from, const glm::dvec3& to) {
+  const glm::dvec3 origin(ray.origin), direction(ray.direction), along = to - from;
+  const double a = glm::dot(direction, direction), b = glm::dot(direction, along), c = glm::dot(along, along);
+  const glm::dvec3 between = origin - from;
+  const double determinant = a * c - b * b;
+  double s = c > 0 ? glm::dot(between, along) / c : 0;  // of the ray's origin: for a ray along the segment
+  if (determinant > 1e-12 * a * c) s = (a * glm::dot(between, along) - b * glm::dot(between, direction)) / determinant;
+  const glm::dvec3 on_segment = from + std::clamp(s, 0.0, 1.0) * along;
+  const double t = std::clamp(glm::dot(on_segment - origin, direction) / a, 0.0, double{ray.t_max});
+  return {origin + t * direction, on_segment};
+}
+
+/// Whether the ray passes within `distance` of a triangle, in front of what it exactly hits, or not that far behind:
+/// an intersection test may then take the triangle to be hit. A triangle that is seen edge-on is hit by no ray
+/// exactly.
+bool passes_by(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32_t triangle, std::uint32_t exact,
+               double distance) {
+  if (triangle >= scene.triangles.size()) return false;
+  const Corners t = corners_of(scene, triangle);
+  const glm::dvec3 origin(ray.origin);
+  double reach = std::numeric_limits<double>::infinity();  // to the exact hit
+  if (exact < scene.triangles.size()) {
+    const std::optional<glm::dvec3> hit = point_in_plane(ray, corners_of(scene, exact));
+    if (!hit) return false;
+    if (glm::distance(closest_point(t, *hit), *hit) <= distance) return true;
+    reach = glm::distance(*hit, origin);
+  }
+  for (const auto& [from, to] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)}) {
+    const auto [on_ray, on_edge] = closest_points(ray, from, to);
+    if (glm::distance(on_ray, on_edge) <= distance && glm::distance(on_ray, origin) <= reach + distance) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -196,7 +223,7 @@ std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtr
       const auto begin = moved_answers.begin() + static_cast<std::ptrdiff_t>(first_moved[i]);
       const auto end = moved_answers.begin() + static_cast<std::ptrdiff_t>(first_moved[i + 1]);
       if (std::find(begin, end, answer) != end) return true;
-      return dispute.ray.kind == RayKind::closest && meets_beside(dispute.ray, scene, answer, exact[i], distances[i]);
+      return dispute.ray.kind == RayKind::closest && passes_by(dispute.ray, scene, answer, exact[i], distances[i]);
     };
     const bool a = is_right(dispute.answer_a), b = is_right(dispute.answer_b);
     judgements.push_back(

@@ -92,6 +92,17 @@ TEST_CASE("of two triangles in one place either is right, of two that lie apart 
   CHECK(judge(plates({1, 1.001f}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::b_right);
 }
 
+TEST_CASE("a triangle seen edge-on may be taken for hit by a ray that touches it, and by no other") {
+  pathtracer::Scene scene = plates({3});
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  for (const glm::vec3& corner : {glm::vec3(0.5f, 0.2f, 1), glm::vec3(0.5f, 0.2f, 2), glm::vec3(0.5f, 0.9f, 1.5f)})
+    scene.positions.push_back(corner);  // in the plane x = 0.5, in front of the plate
+  scene.triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = 0});
+  CHECK(judge(scene, upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(0.5f + 1e-6f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(0.501f, 0.5f), 1, 0).ruling == Ruling::b_right);
+}
+
 TEST_CASE("shadow rays are judged by whether anything is in the way") {
   const pathtracer::Scene scene = plates({1});
   CHECK(judge(scene, upwards(0.5f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::b_right);
