@@ -7,7 +7,7 @@ list(TRANSFORM TANDEM_KERNEL_OPTIONS REPLACE "^ *\"([^\"]*)\".*" "\\1")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
                                        "${CMAKE_CURRENT_LIST_DIR}/../rhi_cpu/translate/compile_options.hpp")
 
-# tandem_add_shaders(NAME SOURCES a.comp b.rgen ... [INCLUDE_DIRECTORIES ...])
+# tandem_add_shaders(NAME SOURCES a.comp b.rgen ... [INCLUDE_DIRECTORIES ...] [SPECIALIZATIONS "0=1" "0=1,3=2" ...])
 #
 # Sources are compute shaders (.comp) and the stages of ray tracing pipelines (.rgen .rmiss .rchit .rahit .rint .rcall).
 # For each (relative to the current directory) the function of its name without extension, e.g. render.comp, and with the
@@ -17,10 +17,13 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
 #   tandem_NAME_kernels (alias Tandem::NAME_kernels), header "NAME/kernels.hpp":
 #     namespace tandem::NAME { std::span<const cpu::PrecompiledKernel> kernels(); }   all of them, for the CPU device
 #
+# Each of SPECIALIZATIONS is a set of constant=value for which kernels are made of every source, beside those with the
+# defaults: others have to be compiled when they are used.
+#
 # SPIR-V keeps its debug information, so that a debugger shows the GLSL. A shader is rebuilt when it or anything that it
 # includes has changed.
 function(tandem_add_shaders name)
-  cmake_parse_arguments(PARSE_ARGV 1 shaders "" "" "SOURCES;INCLUDE_DIRECTORIES")
+  cmake_parse_arguments(PARSE_ARGV 1 shaders "" "" "SOURCES;INCLUDE_DIRECTORIES;SPECIALIZATIONS")
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}.generated")
   set(include_options)
   foreach(directory IN LISTS shaders_INCLUDE_DIRECTORIES)
@@ -33,6 +36,13 @@ function(tandem_add_shaders name)
   set(word_declarations)
   set(entry_declarations)
   set(kernel_entries)
+  set(specialization_values)
+  set(number 0)
+  foreach(values IN LISTS shaders_SPECIALIZATIONS)
+    math(EXPR number "${number} + 1")
+    string(REGEX REPLACE "([0-9]+)=([0-9]+)" "{\\1, \\2}" initializers "${values}")
+    string(APPEND specialization_values "  static constexpr rhi::SpecializationValue specialization_${number}[] = {${initializers}};\n")
+  endforeach()
   foreach(source IN LISTS shaders_SOURCES)
     cmake_path(GET source STEM shader)
     cmake_path(GET source EXTENSION LAST_ONLY stage)
@@ -63,6 +73,21 @@ function(tandem_add_shaders name)
     string(APPEND word_declarations "std::span<const std::uint32_t> ${shader}();\n")
     string(APPEND entry_declarations "extern \"C\" const tandem::kernel::KernelInfo* ${entry}();\n")
     string(APPEND kernel_entries "      {${shader}(), ${entry}},\n")
+    set(number 0)
+    foreach(values IN LISTS shaders_SPECIALIZATIONS)
+      math(EXPR number "${number} + 1")
+      string(REGEX REPLACE "([0-9]+=[0-9]+),?" "--specialize;\\1;" options "${values}")
+      set(variant "${folder}/${shader}_kernel_${number}.cpp")
+      add_custom_command(
+        OUTPUT "${variant}"
+        COMMAND tandem-translate "${spirv}" ${options} --kernel "${variant}" --entry-symbol "${entry}_${number}"
+        DEPENDS "${spirv}" tandem-translate
+        COMMENT "SPIR-V to C++: ${source} with ${values}"
+        VERBATIM)
+      list(APPEND kernel_sources "${variant}")
+      string(APPEND entry_declarations "extern \"C\" const tandem::kernel::KernelInfo* ${entry}_${number}();\n")
+      string(APPEND kernel_entries "      {${shader}(), ${entry}_${number}, specialization_${number}},\n")
+    endforeach()
   endforeach()
 
   file(CONFIGURE OUTPUT "${folder}/include/${name}/spirv.hpp" @ONLY CONTENT [[
@@ -100,7 +125,7 @@ std::span<const cpu::PrecompiledKernel> kernels();
 namespace tandem::@name@ {
 
 std::span<const cpu::PrecompiledKernel> kernels() {
-  static const cpu::PrecompiledKernel all[] = {
+@specialization_values@  static const cpu::PrecompiledKernel all[] = {
 @kernel_entries@  };
   return all;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <string>
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ std::uint8_t to_8bit(float value) {
 
 }  // namespace
 
-AlphaTexture load_alpha_texture(const std::filesystem::path& path) {
+TextureImage load_alpha_texture(const std::filesystem::path& path) {
   const auto fail = [&](const std::string& why) {
     return Error(fmt::format("cannot read the texture '{}': {}", path.string(), why.substr(0, why.find('\n'))));
   };
@@ -34,7 +35,11 @@ AlphaTexture load_alpha_texture(const std::filesystem::path& path) {
   }
   if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
     throw fail(fmt::format("a size of {}x{} is not between 1 and {}", image.width, image.height, largest_side));
-  AlphaTexture texture{.width = image.width, .height = image.height, .texels = {}};
+  TextureImage texture{.name = path.filename().string(),
+                       .format = TexelFormat::single_unorm8,
+                       .width = image.width,
+                       .height = image.height,
+                       .texels = {}};
   const std::size_t count = std::size_t{image.width} * image.height;
   texture.texels.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -44,7 +49,7 @@ AlphaTexture load_alpha_texture(const std::filesystem::path& path) {
       alpha = values[image.channels - 1];
     else if (image.channels == 3)
       alpha = static_cast<float>(luminance(glm::vec3(values[0], values[1], values[2])));
-    texture.texels.push_back(to_8bit(alpha));
+    texture.texels.push_back(std::byte{to_8bit(alpha)});
   }
   return texture;
 }

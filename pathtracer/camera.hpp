@@ -4,19 +4,26 @@
 
 #include <glm/vec3.hpp>
 
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene_buffers.hpp"
 
 namespace tandem::pathtracer {
 
-/// A pinhole at `position`, in the units of the scene.
+struct Scene;
+
+/// Where a picture is taken from, in the units of the scene.
 struct Camera {
+  CameraKind kind = CameraKind::perspective;
   glm::vec3 position{0, 0, 1};
   glm::vec3 target{0, 0, 0};  ///< appears in the centre of the picture
   glm::vec3 up{0, 1, 0};      ///< appears upwards; any length, not parallel to the view
-  float vertical_fov = 40;    ///< degrees between the lower and the upper edge, in (0, 180)
+  float vertical_fov = 40;    ///< perspective: degrees between the lower and the upper edge, in (0, 180)
+  float height = 2;           ///< orthographic: of what it sees
+  float lens_radius = 0;      ///< perspective: 0 is a pinhole
+  float focus_distance = 0;   ///< along the view, to what is sharp; 0: that of the target
+  glm::vec3 motion{0};        ///< of the position while the shutter is open; the view keeps its direction
 };
 
-/// Sets the four camera vectors. Throws Error for a camera that looks nowhere or a field of view out of range.
+/// Sets the members of a camera. Throws Error for one that looks nowhere or a number out of range.
 void set_camera(RenderConstants& constants, const Camera& camera, std::uint32_t width, std::uint32_t height);
 
 /// A view of the whole scene, y upwards: through the open side of a room that has one, centred; from inside a closed

@@ -4,11 +4,13 @@
 #include <iterator>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "pathtracer/error.hpp"
 #include "pathtracer/lights.hpp"
+#include "pathtracer/srgb.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -29,24 +31,51 @@ std::vector<T> never_empty(std::vector<T> values) {
   return values;
 }
 
-struct AlphaTexels {
-  std::vector<GpuAlphaTexture> textures;
-  std::vector<std::uint8_t> texels;  ///< in whole words
+constexpr std::size_t word_size = sizeof(std::uint32_t);
+
+/// The images one after the other behind the table of sRGB (scene.glsl), and the textures that know where.
+struct TexelStore {
+  std::vector<GpuTexture> textures;
+  std::vector<std::byte> texels;  ///< in whole words
 };
 
-AlphaTexels alpha_texels(const Scene& scene) {
-  AlphaTexels all;
-  for (const AlphaTexture& texture : scene.alpha_textures) {
-    if (all.texels.size() + texture.texels.size() > std::numeric_limits<std::uint32_t>::max())
-      throw Error(fmt::format("the textures of {} have more texels than can be counted", scene.name));
-    all.textures.push_back({.first_texel = static_cast<std::uint32_t>(all.texels.size()),
-                            .width = texture.width,
-                            .height = texture.height});
-    all.texels.insert(all.texels.end(), texture.texels.begin(), texture.texels.end());
+TexelStore store_texels(const Scene& scene) {
+  TexelStore store;
+  for (int value = 0; value < 256; ++value) {
+    const float linear = srgb_decode(static_cast<float>(value) / 255.0f);
+    const auto bytes = std::as_bytes(std::span(&linear, 1));
+    store.texels.insert(store.texels.end(), bytes.begin(), bytes.end());
   }
-  constexpr std::size_t word = sizeof(std::uint32_t);
-  all.texels.resize((std::max<std::size_t>(all.texels.size(), 1) + word - 1) / word * word);
-  return all;
+  std::vector<std::size_t> offsets;
+  for (const TextureImage& image : scene.images) {
+    offsets.push_back(store.texels.size());
+    store.texels.insert(store.texels.end(), image.texels.begin(), image.texels.end());
+    store.texels.resize((store.texels.size() + word_size - 1) / word_size * word_size);
+    if (store.texels.size() > std::numeric_limits<std::uint32_t>::max())
+      throw Error(fmt::format("the textures of {} have more texels than can be counted", scene.name));
+  }
+  for (const Texture& texture : scene.textures) {
+    GpuTexture gpu = texture.gpu;
+    if (gpu.kind == TextureKind::image) {
+      const TextureImage& image = scene.images[texture.image];
+      gpu.format = image.format;
+      gpu.width = image.width;
+      gpu.height = image.height;
+      const std::size_t unit = image.format == TexelFormat::single_unorm8 ? 1 : word_size;
+      gpu.first_word = static_cast<std::uint32_t>(offsets[texture.image] / unit);
+    }
+    store.textures.push_back(gpu);
+  }
+  return store;
+}
+
+/// The light that each triangle, then each sphere is, or no_light.
+std::vector<std::uint32_t> lights_of_primitives(const Scene& scene, const std::vector<GpuLight>& lights) {
+  std::vector<std::uint32_t> of_primitives(scene.triangles.size() + scene.spheres.size(), no_light);
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (lights[i].kind == LightKind::triangle || lights[i].kind == LightKind::sphere)
+      of_primitives[lights[i].primitive] = static_cast<std::uint32_t>(i);
+  return of_primitives;
 }
 
 }  // namespace
@@ -59,10 +88,13 @@ Scene in_device_order(const Scene& scene) {
 }
 
 DeviceScene::DeviceScene(rhi::Device& device, const Scene& scene)
-    : triangle_count_(static_cast<std::uint32_t>(scene.triangles.size())) {
+    : triangle_count_(static_cast<std::uint32_t>(scene.triangles.size())),
+      features_(features_of(scene)),
+      environment_(scene.environment),
+      medium_(scene.medium) {
   const auto is_opaque = [&](const GpuTriangle& triangle) { return !is_transparent(scene, triangle); };
   opaque_count_ = static_cast<std::uint32_t>(std::ranges::count_if(scene.triangles, is_opaque));
-  if (transparency())
+  if (opaque_count_ < triangle_count_)
     upload(device, in_device_order(scene));
   else
     upload(device, scene);
@@ -72,24 +104,38 @@ void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   using rhi::BufferUsage;
   const std::vector<GpuLight> lights = build_lights(scene);
   light_count_ = static_cast<std::uint32_t>(lights.size());
+  const auto environment =
+      std::ranges::find_if(lights, [](const GpuLight& light) { return light.kind == LightKind::environment; });
+  if (environment != lights.end()) environment_light_ = static_cast<std::uint32_t>(environment - lights.begin());
   const rhi::CommandListHandle list = device.create_command_list("upload of " + scene.name);
-  const auto store = [&](const auto& values, const char* label) {
-    return upload_all(device, *list, values, BufferUsage::storage, label);
+  const auto store = [&](auto values, const char* label) {
+    return upload_all(device, *list, never_empty(std::move(values)), BufferUsage::storage, label);
   };
   positions_ = upload_all(device, *list, scene.positions,
                           BufferUsage::storage | BufferUsage::acceleration_structure_input, "positions");
   normals_ = store(scene.normals, "normals");
   triangles_ = store(scene.triangles, "triangles");
   materials_ = store(scene.materials, "materials");
-  lights_ = store(never_empty(lights), "lights");
-  if (transparency()) {
-    const AlphaTexels alpha = alpha_texels(scene);
-    texture_coordinates_ = store(never_empty(scene.texture_coordinates), "texture coordinates");
-    alpha_textures_ = store(never_empty(alpha.textures), "alpha textures");
-    alpha_texels_ = store(alpha.texels, "alpha texels");
-  }
+  lights_ = store(lights, "lights");
+  texture_coordinates_ = store(scene.texture_coordinates, "texture coordinates");
+  TexelStore texels = store_texels(scene);
+  textures_ = store(std::move(texels.textures), "textures");
+  texels_ = store(std::move(texels.texels), "texels");
+  primitive_lights_ = store(lights_of_primitives(scene, lights), "lights of primitives");
+  spheres_ = store(scene.spheres, "spheres");
+  environment_cells_ = store(std::vector<GpuEnvironmentCell>(), "environment cells");
+  media_ = store(scene.media, "media");
   create_structures(device, *list, scene);
   device.submit(list)->wait();
+}
+
+void DeviceScene::describe(RenderConstants& constants) const {
+  constants.triangle_count = triangle_count_;
+  constants.opaque_count = opaque_count_;
+  constants.light_count = light_count_;
+  constants.environment_light = environment_light_;
+  constants.environment_texture = environment_ ? environment_->texture : no_texture;
+  constants.medium = medium_;
 }
 
 void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list, const Scene& scene) {
@@ -113,7 +159,8 @@ void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list,
     bottom_.geometries.emplace_back(geometry);
   };
   add_geometry(0, opaque_count_, rhi::GeometryFlags::opaque);
-  if (transparency()) add_geometry(opaque_count_, triangle_count_ - opaque_count_, rhi::GeometryFlags::none);
+  if (opaque_count_ < triangle_count_)
+    add_geometry(opaque_count_, triangle_count_ - opaque_count_, rhi::GeometryFlags::none);
   bottom_.label = scene.name;
   bottom_level_ = device.create_bottom_level(bottom_);
 
@@ -132,9 +179,11 @@ void DeviceScene::record_build(rhi::CommandList& list) {
   top_ = {};
 }
 
-std::vector<rhi::BindGroupEntry> DeviceScene::entries(const rhi::PipelineInterface& interface) const {
-  const rhi::BufferHandle buffers[] = {positions_,           normals_,        triangles_,   materials_, lights_,
-                                       texture_coordinates_, alpha_textures_, alpha_texels_};
+std::vector<rhi::BindGroupEntry> DeviceScene::entries(const rhi::PipelineInterface& interface,
+                                                      const rhi::BufferHandle& constants) const {
+  const rhi::BufferHandle buffers[] = {positions_,           normals_,  triangles_, materials_,        lights_,
+                                       texture_coordinates_, textures_, texels_,    primitive_lights_, spheres_,
+                                       environment_cells_,   media_,    constants};
   std::vector<rhi::BindGroupEntry> entries;
   for (const rhi::ShaderBinding& binding : interface.bindings) {
     if (binding.set != 0) continue;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "pathtracer/features.hpp"
 #include "pathtracer/scene.hpp"
 #include "rhi/device.hpp"
 
@@ -21,13 +23,18 @@ class DeviceScene {
 
   /// Builds the acceleration structures; to be called once, before the first ray, and lets go of what only that needs.
   void record_build(rhi::CommandList& list);
-  /// For a bind group of set 0 of a PathTraceProgram with the scene's transparency(): what it uses of the scene.
-  std::vector<rhi::BindGroupEntry> entries(const rhi::PipelineInterface& interface) const;
+  /// For a bind group of set 0 of a PathTraceProgram: what it uses of the scene.
+  /// @param constants a buffer of one RenderConstants
+  std::vector<rhi::BindGroupEntry> entries(const rhi::PipelineInterface& interface,
+                                           const rhi::BufferHandle& constants) const;
+  /// Sets the members that describe the scene: counts, the environment and its light, the medium.
+  void describe(RenderConstants& constants) const;
 
   std::uint32_t triangle_count() const noexcept { return triangle_count_; }
   /// Those before the transparent ones, which come last on the device.
   std::uint32_t opaque_count() const noexcept { return opaque_count_; }
-  bool transparency() const noexcept { return opaque_count_ < triangle_count_; }
+  /// What the shaders must be able to do for it.
+  Features features() const noexcept { return features_; }
   std::uint32_t light_count() const noexcept { return light_count_; }
 
  private:
@@ -37,8 +44,12 @@ class DeviceScene {
   std::uint32_t triangle_count_ = 0;
   std::uint32_t opaque_count_ = 0;
   std::uint32_t light_count_ = 0;
-  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_;
-  rhi::BufferHandle texture_coordinates_, alpha_textures_, alpha_texels_;  ///< null without transparency
+  std::uint32_t environment_light_ = no_light;
+  Features features_ = 0;
+  std::optional<Environment> environment_;
+  std::uint32_t medium_ = no_medium;
+  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_, texture_coordinates_, textures_, texels_,
+      primitive_lights_, spheres_, environment_cells_, media_;
   rhi::BottomLevelDesc bottom_;
   rhi::TopLevelDesc top_;
   rhi::AccelerationStructureHandle bottom_level_, top_level_;

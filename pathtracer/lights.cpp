@@ -32,7 +32,7 @@ std::vector<GpuLight> build_lights(const Scene& scene) {
     const double power = luminance(scene.materials[triangle.material & ~triangle_smooth].emission);
     const double area = power > 0 ? triangle_area(scene, triangle) : 0;
     if (!(area * power > 0)) continue;
-    lights.push_back({.triangle = static_cast<std::uint32_t>(i), .alias = 0, .threshold = 0, .area_density = 0});
+    lights.push_back({.primitive = static_cast<std::uint32_t>(i)});
     areas.push_back(area);
     weights.push_back(area * power);
   }
@@ -64,8 +64,10 @@ std::vector<GpuLight> build_lights(const Scene& scene) {
     }
 
   const std::vector<double> probabilities = light_probabilities(lights);
-  for (std::size_t i = 0; i < lights.size(); ++i)
+  for (std::size_t i = 0; i < lights.size(); ++i) {
     lights[i].area_density = static_cast<float>(probabilities[i] / areas[i]);
+    lights[i].probability = static_cast<float>(probabilities[i]);
+  }
   return lights;
 }
 

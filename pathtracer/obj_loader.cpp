@@ -78,8 +78,7 @@ std::uint32_t load_texture(Reading& reading, const std::filesystem::path& path) 
     reading.scene.warnings.push_back(reading.text->error(sentence).what());
     return no_texture;
   }
-  reading.scene.alpha_textures.push_back(load_alpha_texture(path));
-  entry->second = static_cast<std::uint32_t>(reading.scene.alpha_textures.size() - 1);
+  entry->second = add_texture(reading.scene, load_alpha_texture(path));
   return entry->second;
 }
 
@@ -312,7 +311,7 @@ std::size_t assemble(Reading& reading) {
       if (is_new) {
         scene.positions.push_back(reading.positions[source.positions[corner]]);
         scene.normals.push_back(smooth ? reading.normals[normal] : glm::vec3(0, 0, 1));
-        if (!scene.alpha_textures.empty())
+        if (!scene.textures.empty())
           scene.texture_coordinates.push_back(
               texture_coordinate == none ? glm::vec2(0) : reading.texture_coordinates[texture_coordinate]);
       }
@@ -347,7 +346,7 @@ Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
   if (const std::size_t lacking = assemble(reading); lacking > 0)
     warn(fmt::format(
         "{} triangles with a texture lack texture coordinates, so they have those of its lower left corner", lacking));
-  if (!reading.scene.alpha_textures.empty() && reading.unusable_texture_coordinates > 0)
+  if (!reading.scene.textures.empty() && reading.unusable_texture_coordinates > 0)
     warn(fmt::format("{} texture coordinates are no finite numbers, and count as 0",
                      reading.unusable_texture_coordinates));
   return std::move(reading.scene);

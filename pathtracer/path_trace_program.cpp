@@ -15,42 +15,36 @@ struct EntryPoint {
   const char* label;
 };
 
-EntryPoint compute_shader(PathTraceTask task, bool transparency) {
+EntryPoint compute_shader(PathTraceTask task) {
   switch (task) {
     case PathTraceTask::log:
-      return transparency ? EntryPoint{shaders::path_log_transparent(), "path_log_transparent.comp"}
-                          : EntryPoint{shaders::path_log(), "path_log.comp"};
+      return {shaders::path_log(), "path_log.comp"};
     case PathTraceTask::answer:
-      return transparency ? EntryPoint{shaders::ray_answer_transparent(), "ray_answer_transparent.comp"}
-                          : EntryPoint{shaders::ray_answer(), "ray_answer.comp"};
+      return {shaders::ray_answer(), "ray_answer.comp"};
     default:
-      return transparency ? EntryPoint{shaders::path_trace_transparent(), "path_trace_transparent.comp"}
-                          : EntryPoint{shaders::path_trace(), "path_trace.comp"};
+      return {shaders::path_trace(), "path_trace.comp"};
   }
 }
 
-EntryPoint ray_generation_shader(PathTraceTask task, bool transparency) {
+EntryPoint ray_generation_shader(PathTraceTask task) {
   switch (task) {
     case PathTraceTask::log:
-      return transparency ? EntryPoint{shaders::path_log_transparent_rgen(), "path_log_transparent.rgen"}
-                          : EntryPoint{shaders::path_log_rgen(), "path_log.rgen"};
+      return {shaders::path_log_rgen(), "path_log.rgen"};
     case PathTraceTask::answer:
-      return transparency ? EntryPoint{shaders::ray_answer_transparent_rgen(), "ray_answer_transparent.rgen"}
-                          : EntryPoint{shaders::ray_answer_rgen(), "ray_answer.rgen"};
+      return {shaders::ray_answer_rgen(), "ray_answer.rgen"};
     default:
-      return transparency ? EntryPoint{shaders::path_trace_transparent_rgen(), "path_trace_transparent.rgen"}
-                          : EntryPoint{shaders::path_trace_rgen(), "path_trace.rgen"};
+      return {shaders::path_trace_rgen(), "path_trace.rgen"};
   }
 }
 
-rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoint& shader) {
+rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoint& shader, Features features) {
   return device.create_compute_pipeline({.shader = device.create_shader_module({shader.spirv, shader.label}),
-                                         .specialization = {},
+                                         .specialization = specialization(features),
                                          .label = "path tracer"});
 }
 
 /// One ray generation, one miss and one hit record: rays of both kinds share them.
-rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_generation, bool transparency) {
+rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_generation, Features features) {
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
     return device.create_shader_module({spirv, label});
   };
@@ -59,8 +53,9 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_g
   desc.miss = {module(shaders::path_trace_rmiss(), "path_trace.rmiss")};
   rhi::HitGroup group;
   group.closest_hit = module(shaders::path_trace_rchit(), "path_trace.rchit");
-  if (transparency) group.any_hit = module(shaders::path_trace_rahit(), "path_trace.rahit");
+  if ((features & feature::transparency) != 0) group.any_hit = module(shaders::path_trace_rahit(), "path_trace.rahit");
   desc.hit_groups = {group};
+  desc.specialization = specialization(features);
   desc.label = "path tracer";
   const rhi::ShaderRecords one{.records = {rhi::ShaderRecord{}}};
   return device.create_shader_table({.pipeline = device.create_ray_tracing_pipeline(desc),
@@ -73,19 +68,19 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_g
 
 }  // namespace
 
-PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, bool transparency, PathTraceTask task)
-    : form_(form) {
+PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, Features features, PathTraceTask task)
+    : form_(form), features_(built_features(features)) {
   if (form == TraceForm::query) {
-    compute_ = compute_pipeline(device, compute_shader(task, transparency));
+    compute_ = compute_pipeline(device, compute_shader(task), features_);
     pipeline_ = compute_;
   } else {
-    table_ = shader_table(device, ray_generation_shader(task, transparency), transparency);
+    table_ = shader_table(device, ray_generation_shader(task), features_);
     pipeline_ = table_->desc().pipeline;
   }
 }
 
 void PathTraceProgram::record(rhi::CommandList& list, const std::vector<rhi::BindGroupHandle>& bind_groups,
-                              const RenderConstants& constants) const {
+                              const DispatchConstants& constants) const {
   const std::span<const std::byte> push_constants = std::as_bytes(std::span(&constants, 1));
   const glm::uvec2 size = constants.tile_size;
   if (form_ == TraceForm::pipeline) {

@@ -4,6 +4,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "pathtracer/features.hpp"
 #include "pathtracer/scene_buffers.hpp"
 #include "pathtracer/trace_form.hpp"
 #include "rhi/device.hpp"
@@ -20,17 +21,19 @@ enum class PathTraceTask {
 /// The path tracer's shaders in one of their forms, ready to run on a device.
 class PathTraceProgram {
  public:
-  /// @param transparency for scenes with transparent triangles, which cost time even where there are none
-  PathTraceProgram(rhi::Device& device, TraceForm form, bool transparency, PathTraceTask task = PathTraceTask::picture);
+  /// @param features what the scene and the settings need; what is built in may have more (built_features)
+  PathTraceProgram(rhi::Device& device, TraceForm form, Features features, PathTraceTask task = PathTraceTask::picture);
 
   /// For which bind groups are made.
   const rhi::PipelineHandle& pipeline() const noexcept { return pipeline_; }
+  Features features() const noexcept { return features_; }
   /// One invocation for each element of constants.tile_size, which is not empty.
   void record(rhi::CommandList& list, const std::vector<rhi::BindGroupHandle>& bind_groups,
-              const RenderConstants& constants) const;
+              const DispatchConstants& constants) const;
 
  private:
   TraceForm form_;
+  Features features_;
   rhi::PipelineHandle pipeline_;
   rhi::ComputePipelineHandle compute_;  ///< of the form query
   rhi::ShaderTableHandle table_;        ///< of the form pipeline

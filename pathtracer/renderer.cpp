@@ -14,16 +14,13 @@
 namespace tandem::pathtracer {
 namespace {
 
-/// Pixel coordinates have 16 bits each in the random number generator's key.
-constexpr std::uint32_t maximum_side = 1u << 16;
-/// Far beyond use, and far from where the counts of rays could overflow.
-constexpr std::uint32_t maximum_depth = 1u << 16;
-
 /// Before the upload: bad settings, and a camera that looks nowhere, are known at once.
 Camera checked_camera(const Scene& scene, const RenderSettings& settings) {
   check(settings);
   const float aspect = static_cast<float>(settings.width) / static_cast<float>(settings.height);
-  const Camera camera = settings.camera ? *settings.camera : automatic_camera(scene, aspect);
+  const Camera camera = settings.camera ? *settings.camera
+                        : scene.camera  ? *scene.camera
+                                        : automatic_camera(scene, aspect);
   RenderConstants constants{};
   set_camera(constants, camera, settings.width, settings.height);
   return camera;
@@ -33,37 +30,31 @@ std::string text_of(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.
 
 }  // namespace
 
-void check(const RenderSettings& settings) {
-  if (settings.width == 0 || settings.height == 0)
-    throw Error(fmt::format("a picture of {}x{} has no pixels", settings.width, settings.height));
-  if (settings.width > maximum_side || settings.height > maximum_side)
-    throw Error(fmt::format("a picture of {}x{} is too large: a side has at most {} pixels", settings.width,
-                            settings.height, maximum_side));
-  if (settings.max_depth == 0 || settings.max_depth > maximum_depth)
-    throw Error(fmt::format("a path depth of {} is not between 1 and {}", settings.max_depth, maximum_depth));
-  if (!(settings.submission_seconds > 0)) throw Error("the time of a submission is not positive");
-  if (settings.background)
-    for (const float value : {settings.background->x, settings.background->y, settings.background->z})
-      if (!(value >= 0) || !std::isfinite(value))
-        throw Error(fmt::format("a background of {} is not finite and at least 0", text_of(*settings.background)));
-}
-
 Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
                    std::optional<TraceForm> trace)
     : device_(std::move(device)),
       scene_name_(scene.name),
       camera_(checked_camera(scene, settings)),
       trace_(choose_trace_form(device_->info(), trace)),
-      scene_(*device_, scene),
-      program_(*device_, trace_, scene_.transparency()) {
+      scene_(*device_, scene) {
   if (device_->info().capabilities.timestamps)
     timestamps_ = device_->create_query_pool({.count = 2, .label = "dispatch times"});
   build_milliseconds_ = execute("build of " + scene_name_, [&](rhi::CommandList& list) { scene_.record_build(list); });
-  scene_group_ = device_->create_bind_group({.pipeline = program_.pipeline(),
-                                             .set = 0,
-                                             .entries = scene_.entries(program_.pipeline()->interface()),
-                                             .label = "scene"});
+  constants_buffer_ = device_->create_buffer(
+      {.size = sizeof(RenderConstants), .usage = rhi::BufferUsage::storage, .label = "render constants"});
   restart(settings);
+}
+
+void Renderer::choose_program(const RenderSettings& settings) {
+  const Features features = scene_.features() | features_of(settings);
+  if (program_ && program_->features() == built_features(features)) return;
+  program_.emplace(*device_, trace_, features);
+  scene_group_ =
+      device_->create_bind_group({.pipeline = program_->pipeline(),
+                                  .set = 0,
+                                  .entries = scene_.entries(program_->pipeline()->interface(), constants_buffer_),
+                                  .label = "scene"});
+  picture_group_ = nullptr;
 }
 
 double Renderer::execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record) {
@@ -81,9 +72,11 @@ double Renderer::execute(const std::string& label, const std::function<void(rhi:
 
 void Renderer::restart(const RenderSettings& settings) {
   check(settings);
-  const Camera camera = settings.camera ? *settings.camera : camera_;
-  set_camera(constants_, camera, settings.width, settings.height);
-  camera_ = camera;
+  RenderSettings completed = settings;
+  if (!completed.camera) completed.camera = camera_;
+  set_camera(constants_, *completed.camera, settings.width, settings.height);
+  camera_ = *completed.camera;
+  choose_program(completed);
   const bool resized = !picture_group_ || settings.width != settings_.width || settings.height != settings_.height;
   settings_ = settings;
   background_ = settings.background.value_or(glm::vec3(scene_.light_count() == 0 ? 1.0f : 0.0f));
@@ -91,11 +84,8 @@ void Renderer::restart(const RenderSettings& settings) {
   if (scene_.light_count() == 0 && !settings.background)
     warnings_.push_back(fmt::format("{}: nothing emits light, so a white background of radiance 1 does", scene_name_));
   constants_.background = background_;
-  constants_.light_count = scene_.light_count();
-  constants_.opaque_count = scene_.opaque_count();
-  constants_.max_depth = settings.max_depth;
-  constants_.seed = settings.seed;
-  constants_.resolution = {settings.width, settings.height};
+  scene_.describe(constants_);
+  set_options(constants_, settings);
   if (resized) {
     const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
     radiance_sum_ = device_->create_buffer(
@@ -103,7 +93,7 @@ void Renderer::restart(const RenderSettings& settings) {
     ray_counts_ = device_->create_buffer(
         {.size = pixels * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = "ray counts"});
     picture_group_ =
-        device_->create_bind_group({.pipeline = program_.pipeline(),
+        device_->create_bind_group({.pipeline = program_->pipeline(),
                                     .set = 1,
                                     .entries = {{.binding = 0, .resource = rhi::BufferRange{radiance_sum_}},
                                                 {.binding = 1, .resource = rhi::BufferRange{ray_counts_}}},
@@ -115,6 +105,7 @@ void Renderer::restart(const RenderSettings& settings) {
 
 void Renderer::clear_picture() {
   const rhi::CommandListHandle list = device_->create_command_list("clear the picture");
+  list->upload(constants_buffer_, 0, std::as_bytes(std::span(&constants_, 1)));
   list->fill({radiance_sum_}, 0);
   list->fill({ray_counts_}, 0);
   device_->submit(list)->wait();
@@ -133,13 +124,11 @@ void Renderer::collect_ray_counts() {
 }
 
 void Renderer::dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count) {
-  constants_.first_sample = first_sample;
-  constants_.sample_count = sample_count;
-  constants_.tile_offset = tile.offset;
-  constants_.tile_size = tile.size;
+  const DispatchConstants constants{
+      .tile_offset = tile.offset, .tile_size = tile.size, .first_sample = first_sample, .sample_count = sample_count};
   const auto start = std::chrono::steady_clock::now();
   device_milliseconds_ += execute("path tracing", [&](rhi::CommandList& list) {
-    program_.record(list, {scene_group_, picture_group_}, constants_);
+    program_->record(list, {scene_group_, picture_group_}, constants);
   });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   pace_.measured(double(tile.size.x) * double(tile.size.y) * sample_count, elapsed.count());

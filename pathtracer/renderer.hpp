@@ -13,31 +13,13 @@
 #include "pathtracer/image.hpp"
 #include "pathtracer/image_io.hpp"
 #include "pathtracer/path_trace_program.hpp"
+#include "pathtracer/render_settings.hpp"
 #include "pathtracer/scene.hpp"
 #include "pathtracer/trace_form.hpp"
 #include "pathtracer/traced_ray.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::pathtracer {
-
-struct RenderSettings {
-  std::uint32_t width = 512;
-  std::uint32_t height = 512;
-  std::uint32_t max_depth = 8;  ///< path segments from the camera on: 1 sees emission only, 2 adds direct light
-  std::uint32_t seed = 0;
-  /// Absent: automatic_camera, or the one in use when restarting.
-  std::optional<Camera> camera = {};
-  /// Radiance of rays that leave the scene. Absent: 0, or 1 when nothing emits.
-  std::optional<glm::vec3> background = {};
-
-  /// Seconds that one submission should take at most; it may take several times as long where the scene is uneven.
-  double submission_seconds = 0.25;
-  /// Side of the largest tile of one submission in pixels, 0 for no bound. It never changes the picture.
-  std::uint32_t maximum_tile = 0;
-};
-
-/// Throws Error for a size or depth of 0 or one that no device can take; a camera is checked when it is used.
-void check(const RenderSettings& settings);
 
 /// Called between submissions with the finished fraction of the call, in [0, 1]; false cancels.
 using Progress = std::function<bool(double fraction)>;
@@ -91,6 +73,7 @@ class Renderer {
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
+  void choose_program(const RenderSettings& settings);
   void clear_picture();
   void collect_ray_counts();
 
@@ -99,13 +82,13 @@ class Renderer {
   Camera camera_;
   TraceForm trace_;
   DeviceScene scene_;
-  PathTraceProgram program_;
   RenderSettings settings_;
+  std::optional<PathTraceProgram> program_;  ///< for the scene and the settings
   glm::vec3 background_{0};
   std::vector<std::string> warnings_;
 
   rhi::BindGroupHandle scene_group_, picture_group_;
-  rhi::BufferHandle radiance_sum_, ray_counts_;
+  rhi::BufferHandle constants_buffer_, radiance_sum_, ray_counts_;
   rhi::QueryPoolHandle timestamps_;
 
   RenderConstants constants_{};

@@ -42,19 +42,19 @@ std::vector<T> load(rhi::Device& device, const rhi::BufferHandle& buffer, std::s
 
 void Renderer::run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers, std::uint32_t count,
                         std::uint32_t sample_count) {
-  const PathTraceProgram program(*device_, trace_, scene_.transparency(), task);
+  const PathTraceProgram program(*device_, trace_, program_->features(), task);
   const rhi::PipelineHandle& pipeline = program.pipeline();
   std::vector<rhi::BindGroupEntry> entries;
   for (const rhi::BufferHandle& buffer : buffers)
     entries.push_back(
         {.binding = static_cast<std::uint32_t>(2 + entries.size()), .resource = rhi::BufferRange{buffer}});
   const std::vector<rhi::BindGroupHandle> groups = {
-      device_->create_bind_group(
-          {.pipeline = pipeline, .set = 0, .entries = scene_.entries(pipeline->interface()), .label = "scene"}),
+      device_->create_bind_group({.pipeline = pipeline,
+                                  .set = 0,
+                                  .entries = scene_.entries(pipeline->interface(), constants_buffer_),
+                                  .label = "scene"}),
       device_->create_bind_group({.pipeline = pipeline, .set = 1, .entries = entries, .label = "rays"})};
-  RenderConstants constants = constants_;
-  constants.tile_size = {count, 1};
-  constants.sample_count = sample_count;
+  const DispatchConstants constants{.tile_size = {count, 1}, .sample_count = sample_count};
   const rhi::CommandListHandle list = device_->create_command_list("rays one by one");
   program.record(*list, groups, constants);
   device_->submit(list)->wait();

@@ -1,6 +1,7 @@
 #include "pathtracer/scene.hpp"
 
 #include <limits>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -14,6 +15,11 @@ Bounds bounds(const Scene& scene) {
       box.minimum = glm::min(box.minimum, scene.positions[vertex]);
       box.maximum = glm::max(box.maximum, scene.positions[vertex]);
     }
+  for (const GpuSphere& sphere : scene.spheres)
+    for (const glm::vec3 centre : {sphere.centre, sphere.centre + sphere.motion}) {
+      box.minimum = glm::min(box.minimum, centre - sphere.radius);
+      box.maximum = glm::max(box.maximum, centre + sphere.radius);
+    }
   return box;
 }
 
@@ -25,12 +31,16 @@ double triangle_area(const Scene& scene, const GpuTriangle& triangle) {
 }
 
 GpuMaterial diffuse_material(glm::vec3 albedo, glm::vec3 emission) {
-  return {.base_color = albedo,
-          .model = MaterialModel::diffuse,
-          .emission = emission,
-          .ior = 1,
-          .reflectance = glm::vec3(0),
-          .transmittance = glm::vec3(1)};
+  GpuMaterial material;
+  material.base_color = albedo;
+  material.emission = emission;
+  return material;
+}
+
+std::uint32_t add_texture(Scene& scene, TextureImage image) {
+  scene.textures.push_back({.gpu = {}, .image = static_cast<std::uint32_t>(scene.images.size())});
+  scene.images.push_back(std::move(image));
+  return static_cast<std::uint32_t>(scene.textures.size() - 1);
 }
 
 bool is_transparent(const GpuMaterial& material) {

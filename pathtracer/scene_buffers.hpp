@@ -6,39 +6,116 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-/// The structures of shaders/scene.glsl, byte for byte (std430).
+/// The structures of shaders/scene.glsl, byte for byte (std430). What each member means is said there; what a shader
+/// never reads is left out here.
 namespace tandem::pathtracer {
 
-enum class MaterialModel : std::uint32_t { diffuse = 0, mirror = 1, dielectric = 2 };
+enum class MaterialModel : std::uint32_t {
+  diffuse = 0,
+  mirror = 1,
+  dielectric = 2,
+  oren_nayar = 3,
+  phong = 4,
+  blinn_phong = 5,
+  conductor = 6,
+  rough_dielectric = 7,
+  thin = 8,
+  principled = 9,
+  boundary = 10
+};
 
 inline constexpr std::uint32_t no_texture = 0xffffffffu;
+inline constexpr std::uint32_t no_medium = 0xffffffffu;
+inline constexpr std::uint32_t no_light = 0xffffffffu;
 
 struct GpuMaterial {
-  glm::vec3 base_color;
-  MaterialModel model;
-  glm::vec3 emission;
-  float ior;
-  glm::vec3 reflectance;
+  glm::vec3 base_color{0.5f};
+  MaterialModel model = MaterialModel::diffuse;
+  glm::vec3 emission{0};
+  float ior = 1;
+  glm::vec3 reflectance{0};
   float opacity = 1;
-  glm::vec3 transmittance;
+  glm::vec3 transmittance{1};
   std::uint32_t alpha_texture = no_texture;
+  glm::vec3 eta{0};
+  float roughness = 0;
+  glm::vec3 absorption{0};
+  float metallic = 0;
+  float exponent = 0;
+  float transmission = 0;
+  float specular = 1;
+  float normal_scale = 1;
+  std::uint32_t base_color_texture = no_texture;
+  std::uint32_t emission_texture = no_texture;
+  std::uint32_t reflectance_texture = no_texture;
+  std::uint32_t roughness_texture = no_texture;
+  std::uint32_t metallic_texture = no_texture;
+  std::uint32_t transmission_texture = no_texture;
+  std::uint32_t transmittance_texture = no_texture;
+  std::uint32_t specular_texture = no_texture;
+  std::uint32_t exponent_texture = no_texture;
+  std::uint32_t normal_texture = no_texture;
+  std::uint32_t bump_texture = no_texture;
+  std::uint32_t medium = no_medium;
+  float alpha_cutoff = 0;
+  std::uint32_t reserved[3] = {};
 };
-static_assert(sizeof(GpuMaterial) == 64);
+static_assert(sizeof(GpuMaterial) == 176);
 
-struct GpuAlphaTexture {
-  std::uint32_t first_texel;
-  std::uint32_t width;
-  std::uint32_t height;
+enum class TextureKind : std::uint32_t { image = 0, checker = 1, noise = 2, uniform = 3 };
+enum class TexelFormat : std::uint32_t { unorm8 = 0, srgb8 = 1, unorm16 = 2, half = 3, float32 = 4, single_unorm8 = 5 };
+enum class TextureAddress : std::uint32_t { repeat = 0, clamp = 1, mirror = 2 };
+enum class TextureFilter : std::uint32_t { nearest = 0, linear = 1 };
+
+/// `GpuTexture::channel` of a number that is the luminance of red, green and blue.
+inline constexpr std::uint32_t luminance_channel = 4;
+
+struct GpuTexture {
+  TextureKind kind = TextureKind::image;
+  TexelFormat format = TexelFormat::unorm8;
+  std::uint32_t first_word = 0;
+  std::uint32_t address = 0;  ///< TextureAddress of u, and that of v shifted left by 8
+  std::uint32_t width = 1;
+  std::uint32_t height = 1;
+  TextureFilter filter = TextureFilter::linear;
+  std::uint32_t channel = 0;
+  glm::vec3 u_row{1, 0, 0};
+  float scale = 1;
+  glm::vec3 v_row{0, 1, 0};
+  std::uint32_t reserved = 0;
+  glm::vec3 color_a{1};
+  float alpha_a = 1;
+  glm::vec3 color_b{0};
+  float alpha_b = 1;
 };
-static_assert(sizeof(GpuAlphaTexture) == 12);
+static_assert(sizeof(GpuTexture) == 96);
+
+enum class LightKind : std::uint32_t {
+  triangle = 0,
+  sphere = 1,
+  point = 2,
+  spot = 3,
+  directional = 4,
+  environment = 5
+};
 
 struct GpuLight {
-  std::uint32_t triangle;
-  std::uint32_t alias;
-  std::uint32_t threshold;
-  float area_density;
+  std::uint32_t primitive = 0;
+  std::uint32_t alias = 0;
+  std::uint32_t threshold = 0;
+  float area_density = 0;
+  LightKind kind = LightKind::triangle;
+  float probability = 0;
+  float cosine_inner = 1;
+  float cosine_outer = 0;
+  glm::vec3 position{0};
+  float reserved_0 = 0;
+  glm::vec3 direction{0, 0, -1};
+  float reserved_1 = 0;
+  glm::vec3 radiance{0};
+  float reserved_2 = 0;
 };
-static_assert(sizeof(GpuLight) == 16);
+static_assert(sizeof(GpuLight) == 80);
 
 inline constexpr std::uint32_t triangle_smooth = 0x80000000u;
 
@@ -48,22 +125,91 @@ struct GpuTriangle {
 };
 static_assert(sizeof(GpuTriangle) == 16);
 
-struct RenderConstants {
-  glm::vec3 camera_position;
-  std::uint32_t first_sample;
-  glm::vec3 camera_right;
-  std::uint32_t sample_count;
-  glm::vec3 camera_up;
-  std::uint32_t max_depth;
-  glm::vec3 camera_forward;
-  std::uint32_t seed;
-  glm::vec3 background;
-  std::uint32_t light_count;
-  glm::uvec2 resolution;
-  glm::uvec2 tile_offset;
-  glm::uvec2 tile_size;
-  std::uint32_t opaque_count;
+struct GpuSphere {
+  glm::vec3 centre{0};
+  float radius = 1;
+  glm::vec3 motion{0};
+  std::uint32_t material = 0;
 };
-static_assert(sizeof(RenderConstants) == 108 && offsetof(RenderConstants, resolution) == 80);
+static_assert(sizeof(GpuSphere) == 32);
+
+struct GpuEnvironmentCell {
+  std::uint32_t threshold;
+  std::uint32_t alias;
+  float density;
+};
+static_assert(sizeof(GpuEnvironmentCell) == 12);
+
+struct GpuMedium {
+  glm::vec3 absorption{0};
+  float anisotropy = 0;
+  glm::vec3 scattering{0};
+  std::uint32_t reserved = 0;
+};
+static_assert(sizeof(GpuMedium) == 32);
+
+enum class CameraKind : std::uint32_t { perspective = 0, orthographic = 1, equirectangular = 2 };
+enum class SamplerKind : std::uint32_t {
+  independent = 0,
+  stratified = 1,
+  halton = 2,
+  hammersley = 3,
+  sobol = 4,
+  blue_noise = 5
+};
+enum class Integrator : std::uint32_t { path = 0, direct = 1, ambient_occlusion = 2 };
+enum class Mis : std::uint32_t { none = 0, balance = 1, power = 2 };
+enum class BsdfSampling : std::uint32_t { bsdf = 0, cosine = 1, uniform = 2 };
+
+/// What stays the same from dispatch to dispatch: the camera, the settings, sizes of the scene.
+struct RenderConstants {
+  glm::vec3 camera_position{0};
+  CameraKind camera_kind = CameraKind::perspective;
+  glm::vec3 camera_right{1, 0, 0};
+  float lens_radius = 0;
+  glm::vec3 camera_up{0, 1, 0};
+  float focus_distance = 1;
+  glm::vec3 camera_forward{0, 0, -1};
+  std::uint32_t triangle_count = 0;
+  glm::vec3 camera_motion{0};
+  std::uint32_t opaque_count = 0;
+  glm::vec3 background{0};
+  std::uint32_t light_count = 0;
+  glm::uvec2 resolution{1};
+  std::uint32_t max_depth = 8;
+  std::uint32_t seed = 0;
+  SamplerKind sampler_kind = SamplerKind::independent;
+  std::uint32_t sampler_total = 1;
+  Integrator integrator = Integrator::path;
+  std::uint32_t light_sampling = 1;
+  Mis mis = Mis::power;
+  BsdfSampling bsdf_sampling = BsdfSampling::bsdf;
+  std::uint32_t roulette = 1;
+  std::uint32_t max_diffuse_depth = 0xffffffffu;
+  std::uint32_t max_glossy_depth = 0xffffffffu;
+  std::uint32_t max_specular_depth = 0xffffffffu;
+  float clamp_direct = 0;
+  float clamp_indirect = 0;
+  float occlusion_length = 1e30f;
+  std::uint32_t environment_texture = no_texture;
+  std::uint32_t environment_light = no_light;
+  std::uint32_t medium = no_medium;
+  glm::vec3 environment_right{1, 0, 0};
+  float shutter = 0;
+  glm::vec3 environment_up{0, 1, 0};
+  float reserved_0 = 0;
+  glm::vec3 environment_forward{0, 0, -1};
+  float reserved_1 = 0;
+};
+static_assert(sizeof(RenderConstants) == 224);
+
+/// What differs between dispatches.
+struct DispatchConstants {
+  glm::uvec2 tile_offset{0};
+  glm::uvec2 tile_size{1};
+  std::uint32_t first_sample = 0;
+  std::uint32_t sample_count = 1;
+};
+static_assert(sizeof(DispatchConstants) == 24);
 
 }  // namespace tandem::pathtracer

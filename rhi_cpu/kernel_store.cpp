@@ -25,10 +25,12 @@ std::vector<rhi::SpecializationValue> complete(const rhi::ShaderReflection& refl
   return values;
 }
 
-bool is_default(const rhi::ShaderReflection& reflection, std::span<const rhi::SpecializationValue> values) {
-  const auto& constants = reflection.specialization_constants;
-  return std::equal(constants.begin(), constants.end(), values.begin(), values.end(),
-                    [](const auto& constant, const auto& value) { return constant.default_value == value.value; });
+/// Whether the kernel was made of the shader and the values, which are complete.
+bool is_made_of(const PrecompiledKernel& kernel, const rhi::ShaderModule& shader,
+                std::span<const rhi::SpecializationValue> values) {
+  const std::vector<rhi::SpecializationValue> own = complete(shader.reflection(), kernel.specialization);
+  return std::ranges::equal(kernel.spirv, shader.spirv()) &&
+         std::ranges::equal(own, values, {}, &rhi::SpecializationValue::value, &rhi::SpecializationValue::value);
 }
 
 /// Everything that the native code of a shader depends on.
@@ -56,12 +58,9 @@ KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, std::filesy
 Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> given,
                            const std::string& label) {
   const std::vector<rhi::SpecializationValue> values = complete(shader.reflection(), given);
-  if (is_default(shader.reflection(), values)) {
-    const auto found = std::find_if(precompiled_.begin(), precompiled_.end(), [&](const PrecompiledKernel& kernel) {
-      return std::equal(kernel.spirv.begin(), kernel.spirv.end(), shader.spirv().begin(), shader.spirv().end());
-    });
-    if (found != precompiled_.end()) return {.info = found->entry(), .library = nullptr};
-  }
+  const auto found = std::ranges::find_if(
+      precompiled_, [&](const PrecompiledKernel& kernel) { return is_made_of(kernel, shader, values); });
+  if (found != precompiled_.end()) return {.info = found->entry(), .library = nullptr};
 
   const ContentHash key = key_of(shader.spirv(), values, compiler(label));
   const std::shared_ptr<Entry> known = entry(key);

@@ -9,7 +9,7 @@
 #include "camera/pinhole.glsl"
 #include "geometry/frame.glsl"
 #include "geometry/surface.glsl"
-#include "light/emissive_triangles.glsl"
+#include "light/light.glsl"
 #include "random.glsl"
 #include "trace.glsl"
 
@@ -26,31 +26,24 @@ precise vec3 drop_negligible(vec3 v) {
               v.z >= NEGLIGIBLE_THROUGHPUT ? v.z : 0.0);
 }
 
-/// Radiance that a point on a light, chosen at random, sends by way of the surface to wo (unit, in the frame), over the
-/// density of the choice. `depth` is that of the segment that ends at the surface.
-precise vec3 direct_light(Surface surface, uint triangle, Frame frame, vec3 wo, RandomKey key, uint depth,
-                          inout uint ray_count) {
-  LightSample light = sample_light(random_bits(key, light_dimension(depth)));
-  if (light.triangle == triangle) return vec3(0.0);
-  precise vec3 to_light = light.position - surface.position;
-  precise float squared_distance = det_dot(to_light, to_light);
-  // A light that touches the surface: there is no direction to it.
-  if (!(squared_distance > 1e-30)) return vec3(0.0);
-  precise vec3 wi = to_light * det_div(1.0, det_sqrt(squared_distance));
-  if (!(det_dot(wi, surface.geometric_normal) > 0.0)) return vec3(0.0);
-  precise vec3 local_wi = to_local(frame, wi);
-  precise float light_cosine = abs(det_dot(wi, light.normal));
-  if (!(local_wi.z > 0.0 && light_cosine > 0.0)) return vec3(0.0);
-  precise float geometry = det_div(local_wi.z * light_cosine, squared_distance * light.area_density);
-  if (!(geometry < 1e30)) return vec3(0.0);
+/// Radiance that a light, chosen at random, sends by way of the surface to wo (unit, in the frame), over the density of
+/// the choice. `depth` is that of the segment that ends at the surface.
+precise vec3 direct_light(Surface surface, BsdfParameters parameters, uint primitive, Frame frame, vec3 wo,
+                          RandomKey key, uint depth, inout uint ray_count) {
+  LightSample light = sample_light(surface.position, random_bits(key, light_dimension(depth)));
+  if (light.primitive == primitive || max_component(light.radiance) == 0.0) return vec3(0.0);
+  if (!(det_dot(light.direction, surface.geometric_normal) > 0.0)) return vec3(0.0);
+  precise vec3 wi = to_local(frame, light.direction);
+  if (!(wi.z > 0.0)) return vec3(0.0);
+  precise float weight = det_div(wi.z, light.density);
+  if (!(weight < 1e30)) return vec3(0.0);
 
-  precise vec3 from = offset_point(surface.position, surface.geometric_normal, surface.offset, wi);
-  precise vec3 to = offset_point(light.position, light.normal, light.offset, -wi);
+  precise vec3 from = offset_point(surface.position, surface.geometric_normal, surface.offset, light.direction);
+  precise vec3 to = offset_point(light.target, light.target_normal, light.target_offset, -light.direction);
   if (from == to) return vec3(0.0);
   ray_count += 1;
   if (trace_occluded(from, to, key, shadow_dimension(depth))) return vec3(0.0);
-  vec3 emission = materials[triangles[light.triangle].material & ~TRIANGLE_SMOOTH].emission;
-  return bsdf_evaluate(surface.material, wo, local_wi) * (emission * light.opacity) * geometry;
+  return bsdf_evaluate(parameters, wo, wi) * light.radiance * weight;
 }
 
 /// Whether a scattered direction is on the side of the true surface that its lobe says. Interpolated normals can send
@@ -78,32 +71,34 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
 
   for (uint depth = 0; depth < render.max_depth; ++depth) {
     ray_count += 1;
-    uint triangle = trace_closest(origin, direction, key, segment_dimension(depth));
-    if (triangle == NO_TRIANGLE) {
+    uint primitive = trace_closest(origin, direction, key, segment_dimension(depth));
+    if (primitive == NO_PRIMITIVE) {
       radiance += throughput * render.background;
       break;
     }
-    Surface surface = surface_at(triangle, origin, direction);
+    Surface surface = surface_at(primitive, origin, direction, 0.0);
     if (count_emission) radiance += throughput * materials[surface.material].emission;
     if (depth + 1 == render.max_depth) break;
 
     Frame frame = make_frame(surface.shading_normal);
     precise vec3 wo = to_local(frame, -direction);
-    bool has_density = bsdf_has_density(surface.material);
+    BsdfParameters parameters =
+        bsdf_parameters(surface.material, surface.outside, surface.texture_coordinates, surface.position);
+    bool has_density = bsdf_has_density(parameters);
     if (has_density && render.light_count != 0) {
-      radiance += throughput * direct_light(surface, triangle, frame, wo, key, depth, ray_count);
+      radiance += throughput * direct_light(surface, parameters, primitive, frame, wo, key, depth, ray_count);
     }
 
     uvec4 bits = random_bits(key, scattering_dimension(depth));
     vec3 u = vec3(unit_interval(bits.x), unit_interval(bits.y), unit_interval(bits.z));
-    BsdfSample scattered = bsdf_sample(surface.material, surface.outside, wo, u);
+    BsdfSample scattered = bsdf_sample(parameters, wo, u);
     precise vec3 next_direction = to_world(frame, scattered.direction);
     if (!on_its_side(surface, scattered, next_direction)) {
       // A density just loses this part of its lobe; a specular lobe would lose all, so there the geometric normal
       // decides.
       if (has_density) break;
       frame = make_frame(surface.geometric_normal);
-      scattered = bsdf_sample(surface.material, surface.outside, to_local(frame, -direction), u);
+      scattered = bsdf_sample(parameters, to_local(frame, -direction), u);
       next_direction = to_world(frame, scattered.direction);
       if (!on_its_side(surface, scattered, next_direction)) break;
     }

@@ -1,4 +1,4 @@
-// Path tracing by ray queries, for scenes in which every triangle is opaque.
+// Path tracing by ray queries.
 #version 460
 #extension GL_EXT_ray_query : require
 #extension GL_GOOGLE_include_directive : require

@@ -8,16 +8,16 @@
 
 /// `position` is that of the invocation in the tile; beyond the tile or the picture there is nothing to do.
 void path_trace(uvec2 position) {
-  if (any(greaterThanEqual(position, render.tile_size))) return;
-  uvec2 pixel = render.tile_offset + position;
+  if (any(greaterThanEqual(position, dispatch.tile_size))) return;
+  uvec2 pixel = dispatch.tile_offset + position;
   if (any(greaterThanEqual(pixel, render.resolution))) return;
   uint index = pixel.y * render.resolution.x + pixel.x;
 
   // One addition for each sample, in order, so that it does not matter how samples are split over dispatches.
   precise vec3 sum = vec3(radiance_sum[3 * index], radiance_sum[3 * index + 1], radiance_sum[3 * index + 2]);
   uint ray_count = 0;
-  for (uint i = 0; i < render.sample_count; ++i) {
-    sum += path_radiance(pixel, render.first_sample + i, ray_count);
+  for (uint i = 0; i < dispatch.sample_count; ++i) {
+    sum += path_radiance(pixel, dispatch.first_sample + i, ray_count);
   }
   radiance_sum[3 * index] = sum.x;
   radiance_sum[3 * index + 1] = sum.y;

@@ -3,10 +3,9 @@
 #extension GL_EXT_ray_tracing : require
 #extension GL_GOOGLE_include_directive : require
 
-#define TANDEM_TRANSPARENCY  // a scene without has the first geometry only
 #include "trace/payload.glsl"
-#include "trace/triangle_index.glsl"
+#include "trace/primitive_index.glsl"
 
 layout(location = 0) rayPayloadInEXT RayPayload ray_payload;
 
-void main() { ray_payload.triangle = triangle_index(gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT, gl_PrimitiveID); }
+void main() { ray_payload.primitive = primitive_index(gl_InstanceCustomIndexEXT, gl_GeometryIndexEXT, gl_PrimitiveID); }

@@ -4,8 +4,8 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "trace/payload.glsl"
-#include "trace/triangle_index.glsl"
+#include "trace/primitive_index.glsl"
 
 layout(location = 0) rayPayloadInEXT RayPayload ray_payload;
 
-void main() { ray_payload.triangle = NO_TRIANGLE; }
+void main() { ray_payload.primitive = NO_PRIMITIVE; }

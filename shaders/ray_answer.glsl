@@ -1,4 +1,4 @@
-// What an invocation does that traces one ray again, as it was traced, and stores the answer. Of the render constants,
+// What an invocation does that traces one ray again, as it was traced, and stores the answer. Of the dispatch constants,
 // tile_size.x is the number of rays.
 
 #ifndef TANDEM_RAY_ANSWER
@@ -11,7 +11,7 @@
 layout(set = 1, binding = 2, std430) buffer RayLog { TracedRay ray_log[]; };
 
 void ray_answer(uint index) {
-  if (index >= render.tile_size.x) return;
+  if (index >= dispatch.tile_size.x) return;
   TracedRay ray = ray_log[index];
   RandomKey key;
   key.pixel = ray.pixel;
@@ -19,7 +19,7 @@ void ray_answer(uint index) {
   key.seed = render.seed;
   uint answer;
   if (ray.kind == RAY_CLOSEST) {
-    answer = closest_triangle(ray.origin, ray.direction, ray.t_max, key, ray.dimension);
+    answer = closest_primitive(ray.origin, ray.direction, ray.t_max, key, ray.dimension);
   } else {
     answer = is_occluded(ray.origin, ray.direction, ray.t_max, key, ray.dimension) ? 1u : 0u;
   }

@@ -1,6 +1,5 @@
 // How a ray is traced, and the only file that knows. An entry point says by macros which way is meant:
 //   TANDEM_TRACE_PIPELINE  a ray tracing pipeline, else ray queries
-//   TANDEM_TRANSPARENCY    triangles from render.opaque_count on may let rays pass, else all are opaque
 //   TANDEM_RAY_LOG         every ray and its answer is written down; it changes neither
 // Both ways give the same answers, to the last bit: what decides whether a triangle counts depends on the ray and the
 // triangle only (geometry/opacity.glsl), not on the order in which a device offers them.
@@ -8,7 +7,7 @@
 #ifndef TANDEM_TRACE
 #define TANDEM_TRACE
 
-#include "trace/triangle_index.glsl"
+#include "trace/primitive_index.glsl"
 
 // Farther than anything in a scene of floats whose squares are floats.
 const float RAY_LENGTH = 1e30;
@@ -23,14 +22,14 @@ const float RAY_LENGTH = 1e30;
 #include "trace/ray_log.glsl"
 #endif
 
-/// Index of the closest triangle along a ray, or NO_TRIANGLE. The dimension belongs to this ray alone: it decides which
+/// Index of the closest primitive along a ray, or NO_PRIMITIVE. The dimension belongs to this ray alone: it decides which
 /// transparent triangles the ray meets.
 uint trace_closest(vec3 origin, vec3 direction, RandomKey key, uint dimension) {
-  uint triangle = closest_triangle(origin, direction, RAY_LENGTH, key, dimension);
+  uint primitive = closest_primitive(origin, direction, RAY_LENGTH, key, dimension);
 #ifdef TANDEM_RAY_LOG
-  log_ray(TracedRay(origin, RAY_LENGTH, direction, RAY_CLOSEST, triangle, key.pixel, key.sample_index, dimension));
+  log_ray(TracedRay(origin, RAY_LENGTH, direction, RAY_CLOSEST, primitive, key.pixel, key.sample_index, dimension));
 #endif
-  return triangle;
+  return primitive;
 }
 
 /// Whether anything lies between two points. The dimension as for trace_closest.

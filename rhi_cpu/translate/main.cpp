@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -49,6 +50,19 @@ std::string embedded_words(const std::vector<std::uint32_t>& words, const std::s
                             name, name_space);
 }
 
+std::vector<tandem::rhi::SpecializationValue> specialization(const std::vector<std::string>& assignments) {
+  std::vector<tandem::rhi::SpecializationValue> values;
+  for (const std::string& assignment : assignments) {
+    std::istringstream text(assignment);
+    tandem::rhi::SpecializationValue value;
+    char separator = 0;
+    if (!(text >> value.id >> separator >> value.value) || separator != '=' || text.peek() != EOF)
+      throw std::runtime_error("--specialize takes ID=VALUE, not '" + assignment + "'");
+    values.push_back(value);
+  }
+  return values;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -57,6 +71,8 @@ int main(int argc, char** argv) {
   std::string entry_symbol = tandem::cpu::TranslateOptions().entry_symbol;
   app.add_option("spirv", input, "SPIR-V binary")->required();
   app.add_option("--kernel", kernel, "write the kernel's C++ here (- for standard output)");
+  std::vector<std::string> assignments;
+  app.add_option("--specialize", assignments, "ID=VALUE of a specialisation constant; the others keep their defaults");
   app.add_option("--entry-symbol", entry_symbol, "name of the function that the kernel exports")->capture_default_str();
   app.add_option("--embed", embed, "write C++ that holds the SPIR-V words here");
   app.add_option("--namespace", name_space, "namespace of the embedded words")->capture_default_str();
@@ -65,9 +81,10 @@ int main(int argc, char** argv) {
   try {
     const std::vector<std::uint32_t> words = read_words(input);
     if (!embed.empty()) write(embed, embedded_words(words, name_space, name));
+    const std::vector<tandem::rhi::SpecializationValue> values = specialization(assignments);
     if (!kernel.empty())
       write(kernel, tandem::cpu::translate(words, std::filesystem::path(input).filename().string(),
-                                           {.specialization = {}, .entry_symbol = entry_symbol})
+                                           {.specialization = values, .entry_symbol = entry_symbol})
                         .source);
   } catch (const std::exception& error) {
     fmt::print(stderr, "tandem-translate: {}\n", error.what());

@@ -7,6 +7,7 @@ const uint LOBE_NONE = 0;  // nothing scattered: the path ends
 const uint LOBE_DIFFUSE = 1;
 const uint LOBE_SPECULAR = 2;      // the direction has no density: light sampling cannot find it
 const uint LOBE_TRANSMISSION = 4;  // the direction is on the other side of the surface
+const uint LOBE_GLOSSY = 8;        // it has a density, concentrated around one direction
 
 struct BsdfSample {
   vec3 direction;  // unit, away from the surface, in the shading frame

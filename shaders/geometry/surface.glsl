@@ -20,6 +20,16 @@ TriangleVertices triangle_vertices(uvec3 vertices) {
   return TriangleVertices(vertex_position(vertices.x), vertex_position(vertices.y), vertex_position(vertices.z));
 }
 
+vec2 vertex_texture_coordinates(uint vertex) {
+  return vec2(texture_coordinates[2 * vertex], texture_coordinates[2 * vertex + 1]);
+}
+
+precise vec2 surface_texture_coordinates(uvec3 vertices, vec2 barycentrics) {
+  return (vertex_texture_coordinates(vertices.x) * ((1.0 - barycentrics.x) - barycentrics.y) +
+          vertex_texture_coordinates(vertices.y) * barycentrics.x) +
+         vertex_texture_coordinates(vertices.z) * barycentrics.y;
+}
+
 struct Surface {
   vec3 position;
   vec3 geometric_normal;  // unit, on the side from which the ray came
@@ -27,12 +37,13 @@ struct Surface {
   float offset;           // offset_distance of the position
   bool outside;           // the ray came from the side of the triangle's own (counter-clockwise) normal
   uint material;
+  vec2 texture_coordinates;  // with FEATURE_TEXTURES
 };
 
-/// The surface where a ray meets a triangle. `direction` has unit length.
-precise Surface surface_at(uint triangle_index, vec3 origin, vec3 direction) {
-  uvec3 vertices = triangles[triangle_index].vertices;
-  uint material = triangles[triangle_index].material;
+/// The surface where a ray meets a primitive. `direction` has unit length; `time` in [0, 1] since the shutter opened.
+precise Surface surface_at(uint primitive, vec3 origin, vec3 direction, float time) {
+  uvec3 vertices = triangles[primitive].vertices;
+  uint material = triangles[primitive].material;
   TriangleVertices triangle = triangle_vertices(vertices);
   vec2 barycentrics = hit_barycentrics(triangle, origin, direction);
   precise vec3 normal = triangle_normal(triangle, -direction);
@@ -44,6 +55,9 @@ precise Surface surface_at(uint triangle_index, vec3 origin, vec3 direction) {
   surface.geometric_normal = surface.outside ? normal : -normal;
   surface.shading_normal = surface.geometric_normal;
   surface.offset = offset_distance(surface.position, normal, triangle_extent(triangle));
+
+  surface.texture_coordinates =
+      FEATURE_TEXTURES ? surface_texture_coordinates(vertices, barycentrics) : vec2(0.0);
 
   if ((material & TRIANGLE_SMOOTH) != 0) {
     precise vec3 interpolated = (vertex_normal(vertices.x) * ((1.0 - barycentrics.x) - barycentrics.y) +

@@ -6,34 +6,26 @@
 #include "random.glsl"
 #include "scene.glsl"
 #include "trace/payload.glsl"
-#include "trace/triangle_index.glsl"
+#include "trace/primitive_index.glsl"
 
 layout(location = 0) rayPayloadEXT RayPayload ray_payload;
 
-#ifdef TANDEM_TRANSPARENCY
-const uint OPACITY_FLAGS = gl_RayFlagsNoneEXT;
-#else
-const uint OPACITY_FLAGS = gl_RayFlagsOpaqueEXT;
-#endif
+const uint OPACITY_FLAGS = FEATURE_TRANSPARENCY ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
 
-uint closest_triangle(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
-  ray_payload.triangle = NO_TRIANGLE;
-#ifdef TANDEM_TRANSPARENCY
-  ray_payload.random = random_bits(key, dimension).x;
-#endif
+uint closest_primitive(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
+  ray_payload.primitive = NO_PRIMITIVE;
+  if (FEATURE_TRANSPARENCY) ray_payload.random = random_bits(key, dimension).x;
   traceRayEXT(scene_tlas, OPACITY_FLAGS, 0xff, 0, 0, 0, origin, 0.0, direction, t_max, 0);
-  return ray_payload.triangle;
+  return ray_payload.primitive;
 }
 
 bool is_occluded(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   const uint flags = OPACITY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
   // No closest-hit shader runs: what the miss shader does not change is a hit.
-  ray_payload.triangle = 0;
-#ifdef TANDEM_TRANSPARENCY
-  ray_payload.random = random_bits(key, dimension).x;
-#endif
+  ray_payload.primitive = 0;
+  if (FEATURE_TRANSPARENCY) ray_payload.random = random_bits(key, dimension).x;
   traceRayEXT(scene_tlas, flags, 0xff, 0, 0, 0, origin, 0.0, direction, t_max, 0);
-  return ray_payload.triangle != NO_TRIANGLE;
+  return ray_payload.primitive != NO_PRIMITIVE;
 }
 
 #endif

@@ -1,6 +1,7 @@
 #include "pathtracer/alpha_texture.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,13 @@ using tandem::test::ScratchFolder;
 
 namespace {
 
-using Texels = std::vector<std::uint8_t>;
+using Texels = std::vector<int>;
+
+Texels values_of(const TextureImage& image) {
+  Texels values;
+  for (const std::byte texel : image.texels) values.push_back(std::to_integer<int>(texel));
+  return values;
+}
 
 const std::string grey_image = "P2\n3 2\n255\n0 10 255\n1 128 254\n";
 const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt 2 2\nvt 0 2\n";
@@ -43,27 +50,27 @@ Scene load_leaf(const std::string& obj, const ObjOptions& options = {}, bool wit
 
 TEST_CASE("A grey image is opacities, row by row from the top") {
   const ScratchFolder folder;
-  const AlphaTexture texture = load_alpha_texture(folder.write("mask.pgm", grey_image));
+  const TextureImage texture = load_alpha_texture(folder.write("mask.pgm", grey_image));
   CHECK(texture.width == 3);
   CHECK(texture.height == 2);
-  CHECK(texture.texels == Texels{0, 10, 255, 1, 128, 254});
+  CHECK(values_of(texture) == Texels{0, 10, 255, 1, 128, 254});
 }
 
 TEST_CASE("A coloured image without alpha channel gives its luminance") {
   const ScratchFolder folder;
   const std::string image = "P3\n4 1\n255\n255 255 255  255 0 0  0 255 0  0 0 255\n";
   // 255 times the weights 0.2126, 0.7152 and 0.0722, rounded.
-  CHECK(load_alpha_texture(folder.write("mask.ppm", image)).texels == Texels{255, 54, 182, 18});
+  CHECK(values_of(load_alpha_texture(folder.write("mask.ppm", image))) == Texels{255, 54, 182, 18});
 }
 
 TEST_CASE("An alpha channel is what counts in an image that has one") {
-  const AlphaTexture texture =
+  const TextureImage texture =
       load_alpha_texture(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes" / "leaf.png");
   CHECK(texture.width == 64);
   CHECK(texture.texels.size() == 64 * 64);
   // White everywhere, so its colour would be 255.
-  CHECK(texture.texels.front() == 0);
-  CHECK(texture.texels[32 * 64 + 32] == 255);
+  CHECK(values_of(texture).front() == 0);
+  CHECK(values_of(texture)[32 * 64 + 32] == 255);
 }
 
 TEST_CASE("A texture that is missing or no image is an error that names it") {
@@ -89,7 +96,7 @@ TEST_CASE("A missing texture has no effect where that is allowed") {
 TEST_CASE("Textured vertices have texture coordinates, and a file that two materials name is read once") {
   const Scene scene = load_leaf(quad + "usemtl leaf\nf 1/1 2/2 3/3 4/4\nusemtl other\nf 1/3 2/3 3/3\n");
   CHECK(scene.warnings.empty());
-  CHECK(scene.alpha_textures.size() == 1);
+  CHECK(scene.textures.size() == 1);
   REQUIRE(scene.triangles.size() == 3);
   // The two meet in one vertex only: the third corner has the same texture coordinates in both.
   CHECK(scene.positions.size() == 6);

@@ -38,7 +38,7 @@ TEST_CASE("The alias table gives each light the probability of its area times lu
     const std::vector<double> probabilities = light_probabilities(lights);
     REQUIRE(lights.size() == static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < lights.size(); ++i) {
-      CHECK(lights[i].triangle == i);
+      CHECK(lights[i].primitive == i);
       CHECK(lights[i].alias < lights.size());
       // A light's probability is the sum of at most `count` thresholds, each cut to a multiple of 2^-32 / count.
       CHECK(std::abs(probabilities[i] - weights[i] / total) < 1e-9);
@@ -58,7 +58,7 @@ TEST_CASE("Degenerate triangles and dark ones are no lights") {
   add_light(scene, 1, glm::vec3(0, 0, 2));
   const std::vector<GpuLight> lights = build_lights(scene);
   REQUIRE(lights.size() == 1);
-  CHECK(lights[0].triangle == 2);
+  CHECK(lights[0].primitive == 2);
   CHECK(lights[0].alias == 0);
   CHECK(lights[0].area_density == doctest::Approx(2));
 }

@@ -29,7 +29,7 @@ TEST_CASE("The Cornell box is the measured one") {
   REQUIRE(lights.size() == 2);
   double light_area = 0;
   for (const GpuLight& light : lights) {
-    const GpuTriangle& triangle = scene.triangles[light.triangle];
+    const GpuTriangle& triangle = scene.triangles[light.primitive];
     light_area += triangle_area(scene, triangle);
     CHECK(normal_of(scene, triangle).y < 0);
     CHECK(scene.materials[triangle.material].emission == glm::vec3(17, 12, 4));

@@ -63,7 +63,7 @@ const std::vector<std::uint32_t>& spirv_of(rhi::ShaderStage stage, std::size_t s
   return words;
 }
 
-bool closest_triangle(const ScriptedScene& scene, const Ray& ray, Hit& hit) {
+bool closest_primitive(const ScriptedScene& scene, const Ray& ray, Hit& hit) {
   bool found = false;
   float t_max = ray.t_max;
   for (const Hit& each : scene.hits) {
@@ -78,14 +78,14 @@ bool closest_triangle(const ScriptedScene& scene, const Ray& ray, Hit& hit) {
 bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
   const auto& scene = static_cast<const ScriptedScene&>(top_level);
   ++scene.closest_calls;
-  return closest_triangle(scene, ray, hit);
+  return closest_primitive(scene, ray, hit);
 }
 
 bool occluded(const kernel::TopLevel& top_level, const Ray& ray) {
   const auto& scene = static_cast<const ScriptedScene&>(top_level);
   ++scene.occluded_calls;
   Hit hit;
-  return closest_triangle(scene, ray, hit);
+  return closest_primitive(scene, ray, hit);
 }
 
 bool visit(const kernel::TopLevel& top_level, const Ray& ray, const kernel::CandidateVisitor& visitor, Hit& committed) {

@@ -11,7 +11,7 @@
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;
-using pathtracer::RenderConstants;
+using test::RenderConstants;
 
 namespace {
 
@@ -54,7 +54,7 @@ TANDEM_DEVICE_TEST("Rays that leave the scene bring the background, and are coun
   const test::TestScene scene = empty_scene();
   RenderConstants constants = test::render_constants(glm::vec3(0), 19, 11, scene);
   constants.background = {0.25f, 0.5f, 2.0f};
-  constants.sample_count = 4;
+  constants.dispatch.sample_count = 4;
   const test::Rendering rendering = test::path_trace(device, test::upload(device, scene), {constants});
   for (std::size_t pixel = 0; pixel < 19 * 11; ++pixel) {
     REQUIRE(rendering.radiance_sum[3 * pixel] == 1.0f);
@@ -129,7 +129,7 @@ TANDEM_DEVICE_TEST("Glass without absorption disappears under a uniform sky") {
   RenderConstants constants = test::render_constants(glm::vec3(0), 64, 64, scene);
   constants.background = glm::vec3(1);
   constants.max_depth = 200;
-  constants.sample_count = 16;
+  constants.dispatch.sample_count = 16;
   const test::Rendering rendering = test::path_trace(device, test::upload(device, scene), {constants});
   // Roulette is the only noise: few paths take more than three segments, and those survive at 95 % with weight 1 /
   // 0.95. The deviation of a sample is below sqrt(0.05), so five deviations of the mean of 65536 samples are 0.0044.
@@ -150,7 +150,7 @@ TANDEM_DEVICE_TEST("A rectangular lamp lights a diffuse plane as its form factor
   constants.camera_right = {0, 0, -1e-4f};
   constants.camera_up = {-0.70710678e-4f, 0.70710678e-4f, 0};
   constants.max_depth = 2;
-  constants.sample_count = 16;
+  constants.dispatch.sample_count = 16;
   const test::Rendering rendering = test::path_trace(device, test::upload(device, scene), {constants});
 
   // Form factor of a point to a parallel rectangle over one of its corners, four times (Howell, configuration B-3).
@@ -168,18 +168,18 @@ TANDEM_DEVICE_TEST("Samples and tiles may be split over dispatches in any way wi
   const test::TestScene scene = room();
   const test::DeviceScene device_scene = test::upload(device, scene);
   RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 37, 29, scene);
-  constants.sample_count = 6;
+  constants.dispatch.sample_count = 6;
   const test::Rendering whole = test::path_trace(device, device_scene, {constants});
 
   std::vector<RenderConstants> split;
   for (const std::uint32_t y : {0u, 8u, 13u})
     for (const std::uint32_t x : {0u, 5u, 21u}) {
       RenderConstants part = constants;
-      part.tile_offset = {x, y};
-      part.tile_size = {(x == 0 ? 5u : x == 5 ? 16u : 16u), (y == 0 ? 8u : y == 8 ? 5u : 16u)};
+      part.dispatch.tile_offset = {x, y};
+      part.dispatch.tile_size = {(x == 0 ? 5u : x == 5 ? 16u : 16u), (y == 0 ? 8u : y == 8 ? 5u : 16u)};
       for (const std::uint32_t first : {0u, 1u, 4u}) {
-        part.first_sample = first;
-        part.sample_count = first == 0 ? 1 : first == 1 ? 3 : 2;
+        part.dispatch.first_sample = first;
+        part.dispatch.sample_count = first == 0 ? 1 : first == 1 ? 3 : 2;
         split.push_back(part);
       }
     }
@@ -194,7 +194,7 @@ TANDEM_DEVICE_TEST(
   const test::TestScene scene = room();
   const test::DeviceScene device_scene = test::upload(device, scene);
   RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 64, 64, scene);
-  constants.sample_count = 16;
+  constants.dispatch.sample_count = 16;
   double previous = 0.0;
   for (const std::uint32_t depth : {1u, 2u, 4u, 16u}) {
     constants.max_depth = depth;
@@ -215,7 +215,7 @@ TANDEM_DEVICE_TEST(
 TANDEM_DEVICE_TEST("A face that a scene holds twice looks like one, whichever copy a ray meets") {
   test::TestScene scene = room();
   RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 64, 64, scene);
-  constants.sample_count = 4;
+  constants.dispatch.sample_count = 4;
   const test::Rendering once = test::path_trace(device, test::upload(device, scene), {constants});
   for (const std::uint32_t quad : {0u, 3u, 5u, 7u}) {  // the floor, a wall, the mirror, the glass
     scene.triangles.push_back(scene.triangles[2 * quad]);
@@ -233,7 +233,7 @@ TANDEM_DEVICE_TEST("A face that a scene holds twice looks like one, whichever co
 TEST_CASE("All devices compute the same images to the last bit") {
   const test::TestScene scene = room();
   RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 128, 128, scene);
-  constants.sample_count = 4;
+  constants.dispatch.sample_count = 4;
   std::vector<test::Rendering> renderings;
   for (const std::string& name : test::device_names()) {
     rhi::Device& device = *test::device(name);

@@ -15,8 +15,8 @@
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;
-using pathtracer::RenderConstants;
 using pathtracer::triangle_smooth;
+using test::RenderConstants;
 
 namespace {
 
@@ -37,7 +37,7 @@ layout(set = 1, binding = 3, std430) buffer Answers { float answers[]; };
 void main() {
   uint row = gl_GlobalInvocationID.x;
   if (row >= queries.length()) return;
-  Surface surface = surface_at(queries[row].triangle, queries[row].origin, queries[row].direction);
+  Surface surface = surface_at(queries[row].triangle, queries[row].origin, queries[row].direction, 0.0);
   answers[3 * row] = surface.shading_normal.x;
   answers[3 * row + 1] = surface.shading_normal.y;
   answers[3 * row + 2] = surface.shading_normal.z;
@@ -57,13 +57,11 @@ std::vector<float> run_shading_normals(rhi::Device& device, const test::TestScen
   const rhi::ComputePipelineHandle pipeline = test::compute_pipeline(device, shading_normals, "shading normals");
   const rhi::BufferHandle answers = test::buffer_of(device, std::vector<float>(3 * queries.size()), "answers");
   const auto whole = [](const rhi::BufferHandle& buffer) { return rhi::BufferRange{.buffer = buffer}; };
-  const rhi::BindGroupHandle scene_group =
-      device.create_bind_group({.pipeline = pipeline,
-                                .set = 0,
-                                .entries = {{.binding = 1, .resource = whole(device_scene.positions)},
-                                            {.binding = 2, .resource = whole(device_scene.normals)},
-                                            {.binding = 3, .resource = whole(device_scene.triangles)}},
-                                .label = "scene"});
+  const rhi::BindGroupHandle scene_group = device.create_bind_group(
+      {.pipeline = pipeline,
+       .set = 0,
+       .entries = test::scene_entries(pipeline->interface(), device_scene, device_scene.unused),
+       .label = "scene"});
   const rhi::BindGroupHandle query_group = device.create_bind_group(
       {.pipeline = pipeline,
        .set = 1,
@@ -115,7 +113,7 @@ double shading_error(rhi::Device& device, int subdivisions, std::uint32_t smooth
   scene.add_lights();
   RenderConstants constants = camera_on_unit_sphere(side, scene);
   constants.max_depth = 2;
-  constants.sample_count = samples;
+  constants.dispatch.sample_count = samples;
   const test::Rendering rendering = test::path_trace(device, test::upload(device, scene), {constants});
 
   double squares = 0.0;
@@ -244,7 +242,7 @@ TANDEM_DEVICE_TEST("No light comes through a smooth surface, however its normals
     scene.add_quad({-100, -100, -6}, {200, 0, 0}, {0, 200, 0}, lamp);
     scene.add_lights();
     RenderConstants constants = test::render_constants({0.5f, 0.25f, 0}, 64, 64, scene);
-    constants.sample_count = 4;
+    constants.dispatch.sample_count = 4;
     const test::Rendering rendering = test::path_trace(device, test::upload(device, scene), {constants});
     CHECK(std::all_of(rendering.radiance_sum.begin(), rendering.radiance_sum.end(),
                       [](float value) { return value == 0.0f; }));
@@ -266,7 +264,7 @@ TANDEM_DEVICE_TEST("A smooth sphere of index 1 is invisible, exactly; one of gla
     RenderConstants constants = camera_on_unit_sphere(64, scene);
     constants.background = glm::vec3(1);
     constants.max_depth = 400;
-    constants.sample_count = 16;
+    constants.dispatch.sample_count = 16;
     const test::Rendering rendering = test::path_trace(device, test::upload(device, scene), {constants});
     if (ior == 1.0f) {
       for (const float value : rendering.radiance_sum) REQUIRE(value == 16.0f);
@@ -302,7 +300,7 @@ TEST_CASE("All devices shade smooth spheres to the last bit") {
   scene.add_lights();
   RenderConstants constants = test::render_constants({0.1f, 1, 4}, 128, 128, scene);
   constants.background = {0.2f, 0.3f, 0.4f};
-  constants.sample_count = 4;
+  constants.dispatch.sample_count = 4;
   std::vector<test::Rendering> renderings;
   for (const std::string& name : test::device_names()) {
     rhi::Device& device = *test::device(name);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -14,7 +15,6 @@ namespace tandem::test {
 
 using pathtracer::GpuMaterial;
 using pathtracer::MaterialModel;
-using pathtracer::RenderConstants;
 
 std::uint32_t TestScene::add_material(const GpuMaterial& material) {
   materials.push_back(material);
@@ -55,26 +55,22 @@ void TestScene::add_sphere(const glm::dvec3& centre, double radius, int subdivis
 void TestScene::add_lights() {
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     if (materials[triangles[i].material & ~pathtracer::triangle_smooth].emission == glm::vec3(0)) continue;
-    lights.push_back({.triangle = i,
-                      .alias = static_cast<std::uint32_t>(lights.size()),
-                      .threshold = 0xffffffffu,
-                      .area_density = 0.0f});
+    lights.push_back({.primitive = i, .alias = static_cast<std::uint32_t>(lights.size()), .threshold = 0xffffffffu});
   }
   for (pathtracer::GpuLight& light : lights) {
-    const std::uint32_t* vertices = triangles[light.triangle].vertices;
+    const std::uint32_t* vertices = triangles[light.primitive].vertices;
     const float area = 0.5f * glm::length(glm::cross(positions[vertices[1]] - positions[vertices[0]],
                                                      positions[vertices[2]] - positions[vertices[0]]));
     light.area_density = 1.0f / (static_cast<float>(lights.size()) * area);
+    light.probability = 1.0f / static_cast<float>(lights.size());
   }
 }
 
 GpuMaterial diffuse(const glm::vec3& albedo, const glm::vec3& emission) {
-  return {.base_color = albedo,
-          .model = MaterialModel::diffuse,
-          .emission = emission,
-          .ior = 1.0f,
-          .reflectance = glm::vec3(0),
-          .transmittance = glm::vec3(1)};
+  GpuMaterial material;
+  material.base_color = albedo;
+  material.emission = emission;
+  return material;
 }
 
 GpuMaterial mirror(const glm::vec3& reflectance) {
@@ -101,6 +97,10 @@ DeviceScene upload(rhi::Device& device, const TestScene& scene) {
   result.materials = buffer_of(device, scene.materials, "materials");
   result.lights =
       buffer_of(device, scene.lights.empty() ? std::vector<pathtracer::GpuLight>(1) : scene.lights, "lights");
+  std::vector<std::uint32_t> primitive_lights(scene.triangles.size(), pathtracer::no_light);
+  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) primitive_lights[scene.lights[i].primitive] = i;
+  result.primitive_lights = buffer_of(device, primitive_lights, "lights of primitives");
+  result.unused = buffer_of(device, std::vector<std::uint32_t>(256), "not used");
 
   std::vector<std::uint32_t> indices;
   for (const pathtracer::GpuTriangle& triangle : scene.triangles)
@@ -127,20 +127,31 @@ DeviceScene upload(rhi::Device& device, const TestScene& scene) {
 
 RenderConstants render_constants(const glm::vec3& position, std::uint32_t width, std::uint32_t height,
                                  const TestScene& scene) {
-  return {.camera_position = position,
-          .first_sample = 0,
-          .camera_right = {1, 0, 0},
-          .sample_count = 1,
-          .camera_up = {0, 1, 0},
-          .max_depth = 8,
-          .camera_forward = {0, 0, -1},
-          .seed = 1,
-          .background = glm::vec3(0),
-          .light_count = static_cast<std::uint32_t>(scene.lights.size()),
-          .resolution = {width, height},
-          .tile_offset = {0, 0},
-          .tile_size = {width, height},
-          .opaque_count = static_cast<std::uint32_t>(scene.triangles.size())};
+  RenderConstants constants;
+  constants.camera_position = position;
+  constants.seed = 1;
+  constants.light_count = static_cast<std::uint32_t>(scene.lights.size());
+  constants.resolution = {width, height};
+  constants.triangle_count = static_cast<std::uint32_t>(scene.triangles.size());
+  constants.opaque_count = constants.triangle_count;
+  constants.dispatch.tile_size = {width, height};
+  return constants;
+}
+
+std::vector<rhi::BindGroupEntry> scene_entries(const rhi::PipelineInterface& interface, const DeviceScene& scene,
+                                               const rhi::BufferHandle& constants) {
+  const std::map<std::uint32_t, rhi::BufferHandle> buffers = {
+      {1, scene.positions}, {2, scene.normals},          {3, scene.triangles}, {4, scene.materials},
+      {5, scene.lights},    {9, scene.primitive_lights}, {13, constants}};
+  std::vector<rhi::BindGroupEntry> entries;
+  for (const rhi::ShaderBinding& binding : interface.bindings) {
+    if (binding.set != 0) continue;
+    const auto known = buffers.find(binding.binding);
+    const rhi::BufferRange range{known == buffers.end() ? scene.unused : known->second};
+    entries.push_back({.binding = binding.binding, .resource = range});
+    if (binding.binding == 0) entries.back().resource = scene.top_level;
+  }
+  return entries;
 }
 
 Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches) {
@@ -152,16 +163,6 @@ Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::v
   const rhi::BufferHandle sum = buffer_of(device, std::vector<float>(3 * pixel_count), "radiance sum");
   const rhi::BufferHandle counts = buffer_of(device, std::vector<std::uint32_t>(pixel_count), "ray counts");
   const auto whole = [](const rhi::BufferHandle& buffer) { return rhi::BufferRange{.buffer = buffer}; };
-  const rhi::BindGroupHandle scene_group =
-      device.create_bind_group({.pipeline = pipeline,
-                                .set = 0,
-                                .entries = {{.binding = 0, .resource = scene.top_level},
-                                            {.binding = 1, .resource = whole(scene.positions)},
-                                            {.binding = 2, .resource = whole(scene.normals)},
-                                            {.binding = 3, .resource = whole(scene.triangles)},
-                                            {.binding = 4, .resource = whole(scene.materials)},
-                                            {.binding = 5, .resource = whole(scene.lights)}},
-                                .label = "scene"});
   const rhi::BindGroupHandle film_group = device.create_bind_group(
       {.pipeline = pipeline,
        .set = 1,
@@ -169,10 +170,18 @@ Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::v
        .label = "film"});
   rhi::CommandListHandle list = device.create_command_list("path trace");
   for (const RenderConstants& constants : dispatches) {
+    const rhi::BufferHandle buffer =
+        buffer_of(device, std::vector<pathtracer::RenderConstants>{constants}, "render constants");
+    const rhi::BindGroupHandle scene_group =
+        device.create_bind_group({.pipeline = pipeline,
+                                  .set = 0,
+                                  .entries = scene_entries(pipeline->interface(), scene, buffer),
+                                  .label = "scene"});
+    const pathtracer::DispatchConstants& dispatch = constants.dispatch;
     list->dispatch({.pipeline = pipeline,
                     .bind_groups = {scene_group, film_group},
-                    .push_constants = std::as_bytes(std::span(&constants, 1)),
-                    .workgroup_count = {(constants.tile_size.x + 7) / 8, (constants.tile_size.y + 7) / 8, 1}});
+                    .push_constants = std::as_bytes(std::span(&dispatch, 1)),
+                    .workgroup_count = {(dispatch.tile_size.x + 7) / 8, (dispatch.tile_size.y + 7) / 8, 1}});
   }
   device.submit(list)->wait();
   return {.radiance_sum = contents<float>(device, sum, 3 * pixel_count),

@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "pathtracer/scene_buffers.hpp"
+#include "pathtracer/scene.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::test {
@@ -40,15 +40,26 @@ struct DeviceScene {
   rhi::BufferHandle triangles;
   rhi::BufferHandle materials;
   rhi::BufferHandle lights;
+  rhi::BufferHandle primitive_lights;
+  rhi::BufferHandle unused;  ///< stands in for what the scene has nothing of
   rhi::AccelerationStructureHandle bottom_level;
   rhi::AccelerationStructureHandle top_level;
 };
 
 DeviceScene upload(rhi::Device& device, const TestScene& scene);
 
+/// What path_trace.comp is told, in both of its parts.
+struct RenderConstants : pathtracer::RenderConstants {
+  pathtracer::DispatchConstants dispatch;
+};
+
 /// A camera at `position` that looks along -z with y up and half a field of view of 45 degrees each way.
-pathtracer::RenderConstants render_constants(const glm::vec3& position, std::uint32_t width, std::uint32_t height,
-                                             const TestScene& scene);
+RenderConstants render_constants(const glm::vec3& position, std::uint32_t width, std::uint32_t height,
+                                 const TestScene& scene);
+
+/// For a bind group of set 0. @param constants a buffer of one RenderConstants
+std::vector<rhi::BindGroupEntry> scene_entries(const rhi::PipelineInterface& interface, const DeviceScene& scene,
+                                               const rhi::BufferHandle& constants);
 
 struct Rendering {
   std::vector<float> radiance_sum;  ///< r, g, b of each pixel
@@ -56,7 +67,6 @@ struct Rendering {
 };
 
 /// Runs path_trace.comp once for each of `dispatches`, which share a resolution.
-Rendering path_trace(rhi::Device& device, const DeviceScene& scene,
-                     const std::vector<pathtracer::RenderConstants>& dispatches);
+Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches);
 
 }  // namespace tandem::test

@@ -80,7 +80,7 @@ void main() {
   uint hit = trace_closest(origin, direction, RandomKey(0, 0, 0), 0);
   bool occluded = trace_occluded(offset_point(from, from_normal, from_offset, from_normal),
                                  offset_point(to, to_normal, to_offset, to_normal), RandomKey(0, 0, 0), 0);
-  answers[row] = (hit == queries[row].triangles.x ? 1u : 0u) | (hit == NO_TRIANGLE ? 2u : 0u) | (occluded ? 4u : 0u);
+  answers[row] = (hit == queries[row].triangles.x ? 1u : 0u) | (hit == NO_PRIMITIVE ? 2u : 0u) | (occluded ? 4u : 0u);
 }
 )";
 
@@ -123,13 +123,11 @@ TANDEM_DEVICE_TEST(
     const rhi::BufferHandle answers =
         test::buffer_of(device, std::vector<std::uint32_t>(queries.size(), 8u), "answers");
     const auto whole = [](const rhi::BufferHandle& buffer) { return rhi::BufferRange{.buffer = buffer}; };
-    const rhi::BindGroupHandle scene_group =
-        device.create_bind_group({.pipeline = pipeline,
-                                  .set = 0,
-                                  .entries = {{.binding = 0, .resource = device_scene.top_level},
-                                              {.binding = 1, .resource = whole(device_scene.positions)},
-                                              {.binding = 3, .resource = whole(device_scene.triangles)}},
-                                  .label = "scene"});
+    const rhi::BindGroupHandle scene_group = device.create_bind_group(
+        {.pipeline = pipeline,
+         .set = 0,
+         .entries = test::scene_entries(pipeline->interface(), device_scene, device_scene.unused),
+         .label = "scene"});
     const rhi::BindGroupHandle query_group = device.create_bind_group(
         {.pipeline = pipeline,
          .set = 1,
