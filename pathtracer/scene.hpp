@@ -11,6 +11,7 @@
 
 #include "pathtracer/camera.hpp"
 #include "pathtracer/scene_buffers.hpp"
+#include "pathtracer/scene_settings.hpp"
 
 namespace tandem::pathtracer {
 
@@ -73,6 +74,7 @@ struct Scene {
   std::vector<GpuMedium> media;
   std::uint32_t medium = no_medium;   ///< around everything
   std::optional<Camera> camera;       ///< that the file gives
+  SceneSettings settings;             ///< likewise
   std::vector<std::string> warnings;  ///< what the file asked for and did not get, one sentence each
 };
 
