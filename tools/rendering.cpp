@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 
 #include "devices/devices.hpp"
-#include "pathtracer/obj_loader.hpp"
+#include "pathtracer/scene_loader.hpp"
 #include "tools/interruption.hpp"
 #include "tools/messages.hpp"
 #include "tools/progress_bar.hpp"
@@ -24,7 +24,7 @@ glm::vec3 up_for(const pathtracer::Camera& camera) {
 }  // namespace
 
 pathtracer::Scene load_scene(const RenderOptions& options) {
-  pathtracer::Scene scene = pathtracer::load_obj(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
+  pathtracer::Scene scene = pathtracer::load_scene(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
   print_warnings(scene.warnings);
   return scene;
 }

@@ -1,0 +1,19 @@
+#include "pathtracer/scene_loader.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "pathtracer/error.hpp"
+
+namespace tandem::pathtracer {
+
+Scene load_scene(const std::filesystem::path& path, const ObjOptions& options) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
+  if (extension == ".obj") return load_obj(path, options);
+  throw Error(fmt::format("cannot read '{}': the name of a scene ends in .obj", path.string()));
+}
+
+}  // namespace tandem::pathtracer
