@@ -74,6 +74,9 @@ DecodedImage decode_exr(std::span<const std::byte> file) {
   ExrHeader header;
   if (ParseEXRHeaderFromMemory(&header.value, &version, bytes, file.size(), why.out()) != TINYEXR_SUCCESS)
     throw why.error();
+  const auto is_half = [](int type) { return type == TINYEXR_PIXELTYPE_HALF; };
+  const bool all_half =
+      std::all_of(header.value.pixel_types, header.value.pixel_types + header.value.num_channels, is_half);
   for (int i = 0; i < header.value.num_channels; ++i) header.value.requested_pixel_types[i] = TINYEXR_PIXELTYPE_FLOAT;
   ExrImage loaded;
   if (LoadEXRImageFromMemory(&loaded.value, &header.value, bytes, file.size(), why.out()) != TINYEXR_SUCCESS)
@@ -85,6 +88,7 @@ DecodedImage decode_exr(std::span<const std::byte> file) {
                      .height = static_cast<std::uint32_t>(loaded.value.height),
                      .channels = static_cast<std::uint32_t>(channels.size()),
                      .values = {},
+                     .type = all_half ? StoredType::half : StoredType::float32,
                      .is_png = false,
                      .attributes = {}};
   const std::size_t pixels = std::size_t{image.width} * image.height;
@@ -156,6 +160,7 @@ DecodedImage decode_png(std::span<const std::byte> file) {
   if (std::uint64_t{image.width} * image.height > most_image_values / image.channels)
     throw Error("it has more than 2^30 values");
   const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
+  image.type = wide ? StoredType::unorm16 : StoredType::unorm8;
   const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
   std::vector<png_byte> bytes(row_bytes * image.height);
   std::vector<png_bytep> rows;
@@ -260,7 +265,10 @@ DecodedImage decode_image(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error("the file cannot be opened");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  const std::span<const std::byte> file = std::as_bytes(std::span(text));
+  return decode_image(std::as_bytes(std::span(text)));
+}
+
+DecodedImage decode_image(std::span<const std::byte> file) {
   constexpr std::size_t signature_size = 8;
   const auto* signature = reinterpret_cast<png_const_bytep>(file.data());
   if (file.size() >= signature_size && png_sig_cmp(signature, 0, signature_size) == 0) return decode_png(file);

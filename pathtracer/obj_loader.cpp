@@ -14,9 +14,9 @@
 #include <tiny_obj_loader.h>
 #include <glm/geometric.hpp>
 
-#include "pathtracer/alpha_texture.hpp"
 #include "pathtracer/mtl_loader.hpp"
 #include "pathtracer/polygon.hpp"
+#include "pathtracer/texture_image.hpp"
 #include "pathtracer/wavefront_text.hpp"
 
 namespace tandem::pathtracer {

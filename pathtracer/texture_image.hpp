@@ -16,10 +16,15 @@ enum class TextureEncoding {
 };
 
 /// Reads an image file in the nearest format that holds it without loss. One or two channels become grey, or grey with
-/// alpha. Any format that decode_image reads. Throws Error, naming the file.
+/// alpha; of more than four the first three count. What is no finite number becomes 0, and so do colours below 0. Any
+/// format that decode_image reads. Throws Error, naming the file.
 TextureImage load_texture_image(const std::filesystem::path& path, TextureEncoding encoding);
 
 /// The same for the bytes of an image file. @param name for messages
 TextureImage decode_texture_image(std::span<const std::byte> file, const std::string& name, TextureEncoding encoding);
+
+/// Reads an image as opacities: its alpha channel, or without one the luminance of its values as they are stored, in 8
+/// bits (TexelFormat::single_unorm8). Throws Error, naming the file.
+TextureImage load_alpha_texture(const std::filesystem::path& path);
 
 }  // namespace tandem::pathtracer

@@ -1,4 +1,4 @@
-#include "pathtracer/alpha_texture.hpp"
+#include "pathtracer/texture_image.hpp"
 
 #include <algorithm>
 #include <cstddef>
