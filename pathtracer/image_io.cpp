@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdint>
 #include <string_view>
 #include <vector>
 
@@ -35,7 +37,8 @@ void check_image_path(const std::filesystem::path& path) {
   const AtomicFile probe(path);
 }
 
-void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata) {
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata,
+                 const Tone& tone) {
   const Format format = format_of(path);
   const auto fail = [&](const std::string& why) {
     return Error("cannot write '" + path.string() + "': " + first_line(why));
@@ -51,8 +54,11 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
     } else {
       std::vector<std::uint8_t> encoded;
       encoded.reserve(3 * image.pixels.size());
-      for (const glm::vec3& pixel : image.pixels)
-        for (const float value : {pixel.x, pixel.y, pixel.z}) encoded.push_back(srgb_encode_8bit(value));
+      for (const glm::vec3& pixel : image.pixels) {
+        const glm::vec3 shown = tone_mapped(pixel, tone);
+        for (const float value : {shown.x, shown.y, shown.z})
+          encoded.push_back(static_cast<std::uint8_t>(std::lround(255 * value)));
+      }
       file = encode_png(image.width, image.height, encoded, attributes);
     }
   } catch (const Error& error) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "pathtracer/image.hpp"
+#include "pathtracer/tone_map.hpp"
 
 namespace tandem::pathtracer {
 
@@ -16,11 +17,13 @@ using ImageMetadata = std::map<std::string, std::string>;
 /// folder must exist and take a new file, and the path must not be a folder. To be called before a long rendering.
 void check_image_path(const std::filesystem::path& path);
 
-/// Writes 32-bit float OpenEXR, or PNG of 8 bits, sRGB-encoded and clamped (NaN becomes black). The file appears whole,
+/// Writes 32-bit float OpenEXR, or PNG of 8 bits through the tone curve (NaN becomes black). The file appears whole,
 /// replacing an older one, or not at all. Throws Error.
-void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata);
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata,
+                 const Tone& tone = {});
 
-/// The pixels, PNG decoded to linear, and the metadata that write_image stored when `metadata` is given. Throws Error.
+/// The pixels, PNG decoded to linear as if its curve were that of sRGB, and the metadata that write_image stored when
+/// `metadata` is given. Throws Error.
 Image read_image(const std::filesystem::path& path, ImageMetadata* metadata = nullptr);
 
 }  // namespace tandem::pathtracer

@@ -43,6 +43,32 @@ void check(const RenderSettings& settings) {
                                 settings.background->y, settings.background->z));
 }
 
+RenderSettings render_settings(const SceneSettings& given) {
+  RenderSettings settings;
+  const auto take = [](auto& member, const auto& value) {
+    if (value) member = *value;
+  };
+  take(settings.width, given.width);
+  take(settings.height, given.height);
+  take(settings.max_depth, given.max_depth);
+  take(settings.seed, given.seed);
+  settings.background = given.background;
+  take(settings.planned_samples, given.samples);
+  take(settings.integrator, given.integrator);
+  take(settings.sampler, given.sampler);
+  take(settings.light_sampling, given.light_sampling);
+  take(settings.mis, given.mis);
+  take(settings.bsdf_sampling, given.bsdf_sampling);
+  take(settings.roulette, given.roulette);
+  settings.max_diffuse_depth = given.max_diffuse_depth;
+  settings.max_glossy_depth = given.max_glossy_depth;
+  settings.max_specular_depth = given.max_specular_depth;
+  take(settings.clamp_direct, given.clamp_direct);
+  take(settings.clamp_indirect, given.clamp_indirect);
+  take(settings.occlusion_length, given.occlusion_length);
+  return settings;
+}
+
 Features features_of(const RenderSettings& settings) {
   Features features = 0;
   if (settings.sampler != SamplerKind::independent) features |= feature::samplers;

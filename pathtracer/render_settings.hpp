@@ -8,6 +8,7 @@
 #include "pathtracer/camera.hpp"
 #include "pathtracer/features.hpp"
 #include "pathtracer/scene_buffers.hpp"
+#include "pathtracer/scene_settings.hpp"
 
 namespace tandem::pathtracer {
 
@@ -47,6 +48,9 @@ struct RenderSettings {
 /// Throws Error for a size or depth of 0 or one that no device can take, and for numbers out of range; a camera is
 /// checked when it is used.
 void check(const RenderSettings& settings);
+
+/// The settings with what is given, the rest as by default.
+RenderSettings render_settings(const SceneSettings& given);
 
 /// What the shaders must be able to do for the settings.
 Features features_of(const RenderSettings& settings);

@@ -192,6 +192,8 @@ ImageMetadata Renderer::metadata() const {
           {"camera", fmt::format("position {} target {} up {} fov {}", text_of(camera_.position),
                                  text_of(camera_.target), text_of(camera_.up), camera_.vertical_fov)},
           {"background", text_of(background_)},
+          {"integrator", name_of(integrator_names(), settings_.integrator)},
+          {"sampler", name_of(sampler_names(), settings_.sampler)},
           {"rays", fmt::to_string(ray_count_)},
           {"milliseconds", fmt::format("{:.3f}", device_milliseconds_)},
           {"version", TANDEM_VERSION}};

@@ -57,8 +57,8 @@ class Renderer {
   const Camera& camera() const noexcept { return camera_; }                        ///< the one in use
   glm::vec3 background() const noexcept { return background_; }                    ///< the one in use
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }  ///< choices the user may not expect
-  /// scene, triangles, device, driver, trace, size, samples, depth, seed, camera, background, rays, milliseconds,
-  /// version.
+  /// scene, triangles, device, driver, trace, size, samples, depth, seed, camera, background, integrator, sampler,
+  /// rays, milliseconds, version.
   ImageMetadata metadata() const;
 
   /// The rays that each path traces under the settings, in order, with the answers of this device. Changes nothing.

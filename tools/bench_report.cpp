@@ -12,8 +12,8 @@
 namespace tandem::tools {
 namespace {
 
-double camera_paths(const RenderOptions& options) {
-  return static_cast<double>(options.size.x) * options.size.y * options.samples;
+double camera_paths(const JobSummary& job) {
+  return static_cast<double>(job.settings.width) * job.settings.height * job.samples;
 }
 
 /// How many times as fast as the first device, round by round: what slows the machine for a while slows both.
@@ -31,11 +31,8 @@ nlohmann::ordered_json spread_json(const Spread& values) {
 }  // namespace
 
 std::string table(const BenchReport& report) {
-  const RenderOptions& options = report.options;
-  std::string text =
-      fmt::format("{} ({} triangles), {}x{}, {} spp, depth {}, seed {}: {} rounds after one to warm up\n\n",
-                  options.scene.string(), report.triangles, options.size.x, options.size.y, options.samples,
-                  options.depth, options.seed, report.series.front().milliseconds.size());
+  std::string text = fmt::format("{}, {}: {} rounds after one to warm up\n\n", scene_text(report.job),
+                                 settings_text(report.job), report.series.front().milliseconds.size());
   const auto row = [&](const auto&... cells) {
     fmt::format_to(std::back_inserter(text), "{:<12}{:<30}{:>12}{:>14}  {}\n", cells...);
   };
@@ -45,7 +42,7 @@ std::string table(const BenchReport& report) {
     const Spread ratio = speed_ratio(report.series.front(), series);
     row(series.device.name, fmt::format("{:.1f} ({:.1f}, {:.1f})", times.median, times.least, times.most),
         fmt::format("{:.3f}", per_second_in_millions(static_cast<double>(series.rays), times.median)),
-        fmt::format("{:.3f}", per_second_in_millions(camera_paths(options), times.median)),
+        fmt::format("{:.3f}", per_second_in_millions(camera_paths(report.job), times.median)),
         fmt::format("{:.3f} ({:.3f}, {:.3f})", ratio.median, ratio.least, ratio.most));
   }
   text += '\n';
@@ -57,16 +54,9 @@ std::string table(const BenchReport& report) {
 }
 
 nlohmann::ordered_json to_json(const BenchReport& report) {
-  const RenderOptions& options = report.options;
   nlohmann::ordered_json json;
-  json["settings"] = {{"scene", options.scene.string()},
-                      {"triangles", report.triangles},
-                      {"width", options.size.x},
-                      {"height", options.size.y},
-                      {"spp", options.samples},
-                      {"depth", options.depth},
-                      {"seed", options.seed},
-                      {"threads", options.threads}};
+  json["settings"] = to_json(report.job);
+  json["settings"]["threads"] = report.threads;
   json["devices"] = nlohmann::ordered_json::array();
   for (const BenchSeries& series : report.series) {
     const Spread times = spread(series.milliseconds);
@@ -77,7 +67,7 @@ nlohmann::ordered_json to_json(const BenchReport& report) {
     entry["build_ms"] = series.build_milliseconds;
     entry["rays"] = series.rays;
     entry["mrays"] = per_second_in_millions(static_cast<double>(series.rays), times.median);
-    entry["msamples"] = per_second_in_millions(camera_paths(options), times.median);
+    entry["msamples"] = per_second_in_millions(camera_paths(report.job), times.median);
     entry["speed_ratio"] = spread_json(speed_ratio(report.series.front(), series));
     json["devices"].push_back(std::move(entry));
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "rhi/device.hpp"
-#include "tools/render_options.hpp"
+#include "tools/job_report.hpp"
 
 namespace tandem::tools {
 
@@ -19,8 +19,8 @@ struct BenchSeries {
 };
 
 struct BenchReport {
-  RenderOptions options;
-  std::uint64_t triangles = 0;
+  JobSummary job;
+  std::uint32_t threads = 0;        ///< of the CPU device; 0: all
   std::vector<BenchSeries> series;  ///< in the order of the command line; the same number of rounds each
 };
 

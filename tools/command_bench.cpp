@@ -25,13 +25,12 @@ struct Options {
 
 int measure_speed(const Options& options) {
   if (!options.json.empty()) check_output_path(options.json);
-  const pathtracer::Scene scene = load_scene(options.render);
-  const pathtracer::RenderSettings settings = render_settings(options.render, scene);
-  BenchReport report{.options = options.render, .triangles = scene.triangles.size(), .series = {}};
+  const RenderJob job = load_job(options.render);
+  BenchReport report{.job = summary(options.render, job), .threads = options.render.threads, .series = {}};
   std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
   for (const std::string& name : options.devices) {
     const rhi::DeviceHandle device = open_device(name, options.render);
-    renderers.push_back(std::make_unique<pathtracer::Renderer>(device, scene, settings, options.render.trace));
+    renderers.push_back(std::make_unique<pathtracer::Renderer>(device, job.scene, job.settings, options.render.trace));
     report.series.push_back({.device = device->info(),
                              .trace = renderers.back()->trace(),
                              .build_milliseconds = renderers.back()->build_milliseconds(),
@@ -45,8 +44,8 @@ int measure_speed(const Options& options) {
     for (std::size_t index = 0; index < renderers.size(); ++index) {
       pathtracer::Renderer& renderer = *renderers[index];
       BenchSeries& series = report.series[index];
-      renderer.restart(settings);
-      render_samples(renderer, options.render.samples,
+      renderer.restart(job.settings);
+      render_samples(renderer, job.samples,
                      fmt::format("round {} of {}, {}", round, options.rounds, series.device.name));
       series.rays = renderer.ray_count();
       if (round > 0) series.milliseconds.push_back(renderer.device_milliseconds());

@@ -30,6 +30,7 @@ struct Options {
   std::filesystem::path json;    ///< empty: none
   std::filesystem::path folder;  ///< empty: no images
   compare::Tolerance tolerance;
+  pathtracer::Tone tone;
 };
 
 /// What is written once the report is complete; it refers to both.
@@ -40,13 +41,14 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
         {options.json, [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }});
   }
   if (options.folder.empty()) return files;
-  const auto add = [&](const char* name, const auto& image, const auto& metadata) {
-    files.push_back({options.folder / name,
-                     [=](const std::filesystem::path& path) { pathtracer::write_image(path, image(), metadata()); }});
+  const auto add = [&](const char* name, const auto& image, const auto& metadata, const pathtracer::Tone& tone) {
+    files.push_back({options.folder / name, [=](const std::filesystem::path& path) {
+                       pathtracer::write_image(path, image(), metadata(), tone);
+                     }});
   };
   const auto add_rendering = [&](const char* name, const Rendering& rendering) {
     add(
-        name, [&rendering] { return rendering.image; }, [&rendering] { return rendering.metadata; });
+        name, [&rendering] { return rendering.image; }, [&rendering] { return rendering.metadata; }, options.tone);
   };
   const auto metadata = [&report] {
     pathtracer::ImageMetadata both = report.a.metadata;
@@ -58,16 +60,15 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
   add_rendering("a.png", report.a);
   add_rendering("b.exr", report.b);
   add_rendering("b.png", report.b);
-  add(
-      "difference.exr", [&report] { return compare::signed_difference(report.a.image, report.b.image); }, metadata);
-  add(
-      "difference.png", [&report] { return compare::heat_map(report.a.image, report.b.image); }, metadata);
+  add("difference.exr", [&report] { return compare::signed_difference(report.a.image, report.b.image); }, metadata, {});
+  add("difference.png", [&report] { return compare::heat_map(report.a.image, report.b.image); }, metadata, {});
   return files;
 }
 
 int compare_devices(const Options& options) {
-  const pathtracer::Scene scene = load_scene(options.render);
-  const pathtracer::RenderSettings settings = render_settings(options.render, scene);
+  const RenderJob job = load_job(options.render);
+  const pathtracer::Scene& scene = job.scene;
+  const pathtracer::RenderSettings& settings = job.settings;
   // Both before the first rendering, so that a wrong name or a picture too large for one of them does not cost any.
   const rhi::DeviceHandle device_a = open_device(options.a, options.render);
   const rhi::DeviceHandle device_b = open_device(options.b, options.render);
@@ -80,18 +81,17 @@ int compare_devices(const Options& options) {
   const std::optional<OutputFolder> folder =
       options.folder.empty() ? std::nullopt : std::make_optional<OutputFolder>(options.folder);
   check_output_files(files);
-  report.options = options.render;
-  report.triangles = scene.triangles.size();
+  report.job = summary(options.render, job);
   report.tolerance = options.tolerance;
-  report.a = render(renderer_a, device_a->info(), options.render.samples);
+  report.a = render(renderer_a, device_a->info(), job.samples);
   print_warnings(report.a.warnings);
-  report.b = render(renderer_b, device_b->info(), options.render.samples);
+  report.b = render(renderer_b, device_b->info(), job.samples);
   report.metrics = compare::measure(report.a.image, report.b.image);
   report.verdict = compare::judge(report.metrics, report.tolerance);
   if (arbiter) {
     report.arbiter = options.arbiter;
-    report.examination = compare::examine(renderer_a, renderer_b, *arbiter, report.a.image, report.b.image,
-                                          options.render.samples, scene, options.arbiter_pixels);
+    report.examination = compare::examine(renderer_a, renderer_b, *arbiter, report.a.image, report.b.image, job.samples,
+                                          scene, options.arbiter_pixels);
   }
   fmt::print("{}", table(report));
   write_or_rescue(files);
@@ -121,6 +121,7 @@ void add_diff_command(CLI::App& app, Action& action) {
                    "Write a, b and their difference as .exr and .png into this folder, made if it is missing")
       ->type_name("DIR");
 
+  add_tone_options(*command, options->tone);
   CLI::App& tolerance = *command->add_option_group("Tolerance", "When the images agree");
   add_number(tolerance, "--min-within-1e3", options->tolerance.within_1e3, 0.0, 1.0,
              "Least fraction of pixels within 1e-3 relative");

@@ -18,22 +18,23 @@ struct Options {
   RenderOptions render;
   std::string device = "cpu";
   std::filesystem::path output;
+  pathtracer::Tone tone;
 };
 
 int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
-  const pathtracer::Scene scene = load_scene(options.render);
+  const RenderJob job = load_job(options.render);
   const rhi::DeviceHandle device = open_device(options.device, options.render);
-  pathtracer::Renderer renderer(device, scene, render_settings(options.render, scene), options.render.trace);
-  const Rendering rendering = render(renderer, device->info(), options.render.samples);
+  pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
+  const Rendering rendering = render(renderer, device->info(), job.samples);
   print_warnings(rendering.warnings);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {
-                          pathtracer::write_image(path, rendering.image, rendering.metadata);
+                          pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone);
                         }};
   write_or_rescue({&file, 1});
   fmt::print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
-             options.render.size.x, options.render.size.y, options.render.samples, rendering.device.name,
-             rendering.device.description, pathtracer::name(rendering.trace), rendering.milliseconds,
+             job.settings.width, job.settings.height, job.samples, rendering.device.name, rendering.device.description,
+             pathtracer::name(rendering.trace), rendering.milliseconds,
              per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
   return exit_code::success;
 }
@@ -44,9 +45,10 @@ void add_render_command(CLI::App& app, Action& action) {
   CLI::App* const command = app.add_subcommand("render", "Render a scene on one device into an image file");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("-o,--output", options->output, "Image: .exr (linear, 32-bit float) or .png (sRGB, 8 bits)")
+  command->add_option("-o,--output", options->output, "Image: .exr (linear, 32-bit float) or .png (8 bits)")
       ->required()
       ->type_name("FILE");
+  add_tone_options(*command, options->tone);
   command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
       ->type_name("D")
       ->capture_default_str();

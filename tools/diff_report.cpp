@@ -26,7 +26,6 @@ std::uint64_t pixel_count(const DiffReport& report, double fraction) {
 }  // namespace
 
 std::string table(const DiffReport& report) {
-  const RenderOptions& options = report.options;
   const compare::Metrics& metrics = report.metrics;
   std::string text;
   const auto line = [&](const char* name, const std::string& value) {
@@ -41,9 +40,8 @@ std::string table(const DiffReport& report) {
     line(name, fmt::format("{:9.5f} %  {} pixels", 100.0 * value, pixel_count(report, value)));
   };
 
-  line("scene", fmt::format("{} ({} triangles)", options.scene.string(), report.triangles));
-  line("settings", fmt::format("{}x{}, {} spp, depth {}, seed {}", options.size.x, options.size.y, options.samples,
-                               options.depth, options.seed));
+  line("scene", scene_text(report.job));
+  line("settings", settings_text(report.job));
   text += '\n';
   columns("", "a", "b");
   columns("device", report.a.device.name, report.b.device.name);
@@ -73,7 +71,6 @@ std::string table(const DiffReport& report) {
 }
 
 nlohmann::ordered_json to_json(const DiffReport& report) {
-  const RenderOptions& options = report.options;
   const compare::Metrics& metrics = report.metrics;
   nlohmann::ordered_json json;
   json["verdict"] = compare::name(report.verdict);
@@ -103,17 +100,12 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
   json["device_b"] = to_json(report.b.device);
   json["trace_a"] = pathtracer::name(report.a.trace);
   json["trace_b"] = pathtracer::name(report.b.trace);
-  json["settings"] = {{"scene", options.scene.string()},
-                      {"triangles", report.triangles},
-                      {"width", options.size.x},
-                      {"height", options.size.y},
-                      {"spp", options.samples},
-                      {"depth", options.depth},
-                      {"seed", options.seed},
-                      {"camera_position", vector_json(report.a.camera.position)},
-                      {"camera_target", vector_json(report.a.camera.target)},
-                      {"fov", report.a.camera.vertical_fov},
-                      {"background", vector_json(report.a.background)}};
+  json["settings"] = to_json(report.job);
+  json["settings"]["camera"] = pathtracer::name_of(pathtracer::camera_names(), report.a.camera.kind);
+  json["settings"]["camera_position"] = vector_json(report.a.camera.position);
+  json["settings"]["camera_target"] = vector_json(report.a.camera.target);
+  json["settings"]["fov"] = report.a.camera.vertical_fov;
+  json["settings"]["background"] = vector_json(report.a.background);
   json["tolerance"] = {{"within_1e3", report.tolerance.within_1e3},
                        {"bit_equal", report.tolerance.bit_equal},
                        {"mean", report.tolerance.mean},

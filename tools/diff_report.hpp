@@ -7,15 +7,14 @@
 #include "compare/examination.hpp"
 #include "compare/metrics.hpp"
 #include "compare/verdict.hpp"
-#include "tools/render_options.hpp"
+#include "tools/job_report.hpp"
 #include "tools/rendering.hpp"
 
 namespace tandem::tools {
 
 /// All that `tandem diff` found out.
 struct DiffReport {
-  RenderOptions options;
-  std::uint64_t triangles = 0;
+  JobSummary job;
   Rendering a;
   Rendering b;
   compare::Metrics metrics;

@@ -1,7 +1,9 @@
 #include "tools/option_values.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -83,7 +85,25 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, std::optiona
   return add_in_range(command, name, value, least, most, "a number", type, description);
 }
 
-CLI::Option* add_size(CLI::App& command, const std::string& name, glm::uvec2& value, const std::string& description) {
+CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& value,
+                              std::uint32_t least, std::uint32_t most, const std::string& description) {
+  return add_in_range(command, name, value, least, most, "a whole number", "N", description);
+}
+
+CLI::Option* add_choice(CLI::App& command, const std::string& name, std::span<const char* const> names,
+                        const std::function<void(std::size_t)>& choose, const std::string& description) {
+  const std::vector<std::string> texts(names.begin(), names.end());
+  const auto read = [name, texts, choose](const std::string& text) {
+    const auto found = std::ranges::find(texts, text);
+    if (found == texts.end()) refuse(name, text, fmt::format("one of {}", fmt::join(texts, ", ")));
+    choose(static_cast<std::size_t>(found - texts.begin()));
+  };
+  return command.add_option_function<std::string>(name, read, description)
+      ->type_name(fmt::format("{}", fmt::join(texts, "|")));
+}
+
+CLI::Option* add_size(CLI::App& command, const std::string& name, std::optional<glm::uvec2>& value,
+                      const std::string& description) {
   const auto read = [&value, name](const std::string& text) {
     const auto parts = split<2>(text, 'x');
     const std::optional<std::uint32_t> width = parts ? number<std::uint32_t>((*parts)[0]) : std::nullopt;
@@ -91,11 +111,9 @@ CLI::Option* add_size(CLI::App& command, const std::string& name, glm::uvec2& va
     if (!width || !height || *width == 0 || *height == 0 || std::uint64_t{*width} * *height > most_pixels) {
       refuse(name, text, fmt::format("a size such as 512x512, at least 1x1 and at most {} pixels in all", most_pixels));
     }
-    value = {*width, *height};
+    value = glm::uvec2(*width, *height);
   };
-  return command.add_option_function<std::string>(name, read, description)
-      ->type_name("WxH")
-      ->default_str(fmt::format("{}x{}", value.x, value.y));
+  return command.add_option_function<std::string>(name, read, description)->type_name("WxH");
 }
 
 CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<glm::vec3>& value, float least,

@@ -12,12 +12,17 @@
 /// From the options of a command to pictures: what render, diff and bench share.
 namespace tandem::tools {
 
-/// Loads the scene and prints its warnings.
-pathtracer::Scene load_scene(const RenderOptions& options);
+/// What is to be rendered, and how.
+struct RenderJob {
+  pathtracer::Scene scene;
+  pathtracer::RenderSettings settings;
+  std::uint32_t samples = 16;  ///< per pixel
+};
 
-/// The options as the renderer takes them. A camera that is given in part is completed from the automatic one; one
-/// that is only given a position looks at the scene's centre.
-pathtracer::RenderSettings render_settings(const RenderOptions& options, const pathtracer::Scene& scene);
+/// Loads the scene, prints its warnings, and completes the options: by what the scene's file says, then by defaults. A
+/// camera that is given in part is completed from that of the file or the automatic one; one that is only given a
+/// position looks at the scene's centre.
+RenderJob load_job(const RenderOptions& options);
 
 /// Creates the device; what it has to say from warnings on goes to standard error, from any thread.
 rhi::DeviceHandle open_device(const std::string& name, const RenderOptions& options);
