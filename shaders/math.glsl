@@ -252,4 +252,20 @@ precise float det_atan(float x) {
   return x < 0.0 ? -angle : angle;
 }
 
+/// The angle in [-pi, pi] of the point (x, y), counter-clockwise from the x axis, 3 ULP for magnitudes up to 1e38; 0 where
+/// there is none: at the origin, and for infinity and NaN.
+precise float det_atan2(float y, float x) {
+  float width = abs(x);
+  float height = abs(y);
+  bool steep = height > width;
+  float larger = steep ? height : width;
+  if (!(larger >= SMALLEST_NORMAL && larger <= 1e38)) return 0.0;
+  float ratio = det_div(steep ? width : height, larger);
+  if (!(ratio >= SMALLEST_NORMAL)) ratio = 0.0;
+  float angle = atan_unit(ratio);
+  if (steep) angle = HALF_PI - (angle - HALF_PI_LOW);
+  if (x < 0.0) angle = PI - (angle - 2.0 * HALF_PI_LOW);
+  return y < 0.0 ? -angle : angle;
+}
+
 #endif

@@ -30,7 +30,7 @@ precise vec3 drop_negligible(vec3 v) {
 /// the choice. `depth` is that of the segment that ends at the surface.
 precise vec3 direct_light(Surface surface, BsdfParameters parameters, uint primitive, Frame frame, vec3 wo,
                           RandomKey key, uint depth, inout uint ray_count) {
-  LightSample light = sample_light(surface.position, random_bits(key, light_dimension(depth)));
+  LightSample light = sample_light(surface.position, random_bits(key, light_dimension(depth)), 0.0);
   if (light.primitive == primitive || max_component(light.radiance) == 0.0) return vec3(0.0);
   if (!(det_dot(light.direction, surface.geometric_normal) > 0.0)) return vec3(0.0);
   precise vec3 wi = to_local(frame, light.direction);

@@ -11,6 +11,13 @@ uint uniform_index(uint bits, uint count) {
   return high;
 }
 
+/// The same, and what is left of the bits: uniform too, and independent of the index, in steps of `count`.
+uint uniform_index(uint bits, uint count, out uint rest) {
+  uint high;
+  umulExtended(bits, count, high, rest);
+  return high;
+}
+
 /// The entry itself or its alias.
 uint alias_choice(uint index, uint alias, uint threshold, uint bits) { return bits < threshold ? index : alias; }
 

@@ -116,6 +116,36 @@ TANDEM_DEVICE_TEST("det_pow is as exact as its docstring says") {
   CHECK(worst <= 2.0);
 }
 
+TANDEM_DEVICE_TEST("det_atan2 is as exact as its docstring says") {
+  test::RandomSource random(19);
+  std::vector<float> inputs;
+  const auto add = [&](double magnitude) {
+    inputs.push_back(static_cast<float>(random.uniform(-magnitude, magnitude)));
+    inputs.push_back(static_cast<float>(random.uniform(-magnitude, magnitude)));
+  };
+  for (int i = 0; i < 1 << 18; ++i) {
+    add(1);
+    add(std::exp2(random.uniform(-100, 126)));
+    inputs.insert(inputs.end(),
+                  {std::exp2(static_cast<float>(random.uniform(-60, 60))), random.bits() % 2 ? 1.f : -1.f});
+    inputs.insert(inputs.end(),
+                  {random.bits() % 2 ? 3.f : -3.f, std::exp2(static_cast<float>(random.uniform(-60, 60)))});
+  }
+  const std::vector<float> outputs =
+      test::run(device, math_kernel("det_atan2(input_float(0), input_float(1))", 2), inputs);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    worst =
+        std::max(worst, test::ulp_distance(std::atan2(double{inputs[2 * i]}, double{inputs[2 * i + 1]}), outputs[i]));
+  CAPTURE(worst);
+  CHECK(worst <= 3.0);
+
+  const std::vector<float> axes = test::run(device, math_kernel("det_atan2(input_float(0), input_float(1))", 2),
+                                            {0, 1, 0, -1, 1, 0, -1, 0, 0, 0, 1, 1, -1, -1});
+  const float pi = 3.14159274f;
+  CHECK(axes == std::vector<float>{0, pi, 0.5f * pi, -0.5f * pi, 0, 0.25f * pi, -0.75f * pi});
+}
+
 TANDEM_DEVICE_TEST("Mathematical functions give finite results for every argument") {
   for (const std::string function : {"det_sin", "det_cos", "det_exp", "det_log", "det_acos", "det_atan"}) {
     const std::vector<float> outputs = test::run(device, unary(function), hostile);
@@ -132,6 +162,8 @@ TANDEM_DEVICE_TEST("Mathematical functions give finite results for every argumen
     INFO(pairs[2 * i], " to the power of ", pairs[2 * i + 1], " is ", powers[i]);
     CHECK(std::isfinite(powers[i]));
   }
+  for (const float angle : test::run(device, math_kernel("det_atan2(input_float(0), input_float(1))", 2), pairs))
+    CHECK(std::isfinite(angle));
 }
 
 TANDEM_DEVICE_TEST("Exact values of the mathematical functions") {
@@ -177,6 +209,7 @@ TEST_CASE("Every device computes the same bits") {
     check(unary(function.name), all_magnitudes);
   }
   check(math_kernel("det_pow(abs(input_float(0)), input_float(1))", 2), all_magnitudes);
+  check(math_kernel("det_atan2(input_float(0), input_float(1))", 2), all_magnitudes);
   for (const char* kernel : {"sin_kernel", "cos_kernel", "asin_kernel"})
     check(math_kernel(kernel + std::string("(0.0005 * input_float(0))"), 1), moderate);
   check({.includes = "#include \"math.glsl\"",

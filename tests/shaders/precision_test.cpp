@@ -101,6 +101,7 @@ void main() {
   v[4] = det_pow(v[4], v[5]);
   v[5] = det_acos(v[5]);
   v[6] = det_atan(v[6]);
+  v[8] = det_atan2(v[6], v[7]);
   vec3 a = det_normalize(vec3(v[0], v[1], v[2]), vec3(1.0));
   v[7] = det_length(det_reflect(a, det_cross(a, vec3(v[3], v[4], v[5]))));
 }
