@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "pathtracer/environment.hpp"
 #include "pathtracer/error.hpp"
-#include "pathtracer/lights.hpp"
 #include "pathtracer/srgb.hpp"
 
 namespace tandem::pathtracer {
@@ -70,11 +70,10 @@ TexelStore store_texels(const Scene& scene) {
 }
 
 /// The light that each triangle, then each sphere is, or no_light.
-std::vector<std::uint32_t> lights_of_primitives(const Scene& scene, const std::vector<GpuLight>& lights) {
+std::vector<std::uint32_t> lights_of_primitives(const Scene& scene, std::span<const Emitter> emitters) {
   std::vector<std::uint32_t> of_primitives(scene.triangles.size() + scene.spheres.size(), no_light);
-  for (std::size_t i = 0; i < lights.size(); ++i)
-    if (lights[i].kind == LightKind::triangle || lights[i].kind == LightKind::sphere)
-      of_primitives[lights[i].primitive] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i < emitters.size(); ++i)
+    if (emitters[i].area > 0) of_primitives[emitters[i].light.primitive] = static_cast<std::uint32_t>(i);
   return of_primitives;
 }
 
@@ -102,11 +101,12 @@ DeviceScene::DeviceScene(rhi::Device& device, const Scene& scene)
 
 void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   using rhi::BufferUsage;
-  const std::vector<GpuLight> lights = build_lights(scene);
-  light_count_ = static_cast<std::uint32_t>(lights.size());
-  const auto environment =
-      std::ranges::find_if(lights, [](const GpuLight& light) { return light.kind == LightKind::environment; });
-  if (environment != lights.end()) environment_light_ = static_cast<std::uint32_t>(environment - lights.begin());
+  name_ = scene.name;
+  emitters_ = scene_emitters(scene);
+  radius_ = scene_radius(scene);
+  const auto environment = std::ranges::find_if(
+      emitters_, [](const Emitter& emitter) { return emitter.light.kind == LightKind::environment; });
+  if (environment != emitters_.end()) environment_light_ = static_cast<std::uint32_t>(environment - emitters_.begin());
   const rhi::CommandListHandle list = device.create_command_list("upload of " + scene.name);
   const auto store = [&](auto values, const char* label) {
     return upload_all(device, *list, never_empty(std::move(values)), BufferUsage::storage, label);
@@ -116,17 +116,34 @@ void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   normals_ = store(scene.normals, "normals");
   triangles_ = store(scene.triangles, "triangles");
   materials_ = store(scene.materials, "materials");
-  lights_ = store(lights, "lights");
+  upload_lights(device, *list, punctual_emitters(scene.lights, name_, radius_));
   texture_coordinates_ = store(scene.texture_coordinates, "texture coordinates");
   TexelStore texels = store_texels(scene);
   textures_ = store(std::move(texels.textures), "textures");
   texels_ = store(std::move(texels.texels), "texels");
-  primitive_lights_ = store(lights_of_primitives(scene, lights), "lights of primitives");
+  primitive_lights_ = store(lights_of_primitives(scene, emitters_), "lights of primitives");
   spheres_ = store(scene.spheres, "spheres");
-  environment_cells_ = store(std::vector<GpuEnvironmentCell>(), "environment cells");
+  environment_cells_ = store(pathtracer::environment_cells(scene), "environment cells");
   media_ = store(scene.media, "media");
   create_structures(device, *list, scene);
   device.submit(list)->wait();
+}
+
+void DeviceScene::upload_lights(rhi::Device& device, rhi::CommandList& list, std::span<const Emitter> punctual) {
+  // Those that stay come first, so that they keep their indices.
+  std::vector<Emitter> all = emitters_;
+  all.insert(all.end(), punctual.begin(), punctual.end());
+  const std::vector<GpuLight> lights = light_table(all);
+  lights_ = upload_all(device, list, never_empty(lights), rhi::BufferUsage::storage, "lights");
+  light_count_ = static_cast<std::uint32_t>(lights.size());
+}
+
+void DeviceScene::set_lights(rhi::Device& device, std::span<const PunctualLight> lights) {
+  const std::vector<Emitter> punctual = punctual_emitters(lights, name_, radius_);
+  const rhi::CommandListHandle list = device.create_command_list("lights of " + name_);
+  upload_lights(device, *list, punctual);
+  device.submit(list)->wait();
+  if (!lights.empty()) features_ |= feature::lights;
 }
 
 void DeviceScene::describe(RenderConstants& constants) const {
@@ -135,6 +152,7 @@ void DeviceScene::describe(RenderConstants& constants) const {
   constants.light_count = light_count_;
   constants.environment_light = environment_light_;
   constants.environment_texture = environment_ ? environment_->texture : no_texture;
+  if (environment_) set_environment_frame(constants, *environment_);
   constants.medium = medium_;
 }
 

@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "pathtracer/features.hpp"
+#include "pathtracer/lights.hpp"
 #include "pathtracer/scene.hpp"
 #include "rhi/device.hpp"
 
@@ -20,6 +22,10 @@ class DeviceScene {
   /// Uploads the scene; its acceleration structures are still to be built. Throws rhi::Error for what the device
   /// refuses (a scene that is too large).
   DeviceScene(rhi::Device& device, const Scene& scene);
+
+  /// Puts other lights without extent in the place of the scene's. Bind groups with its entries are to be made anew,
+  /// and its features may have become more. Throws Error for numbers out of range; nothing has changed then.
+  void set_lights(rhi::Device& device, std::span<const PunctualLight> lights);
 
   /// Builds the acceleration structures; to be called once, before the first ray, and lets go of what only that needs.
   void record_build(rhi::CommandList& list);
@@ -36,13 +42,19 @@ class DeviceScene {
   /// What the shaders must be able to do for it.
   Features features() const noexcept { return features_; }
   std::uint32_t light_count() const noexcept { return light_count_; }
+  /// Of the scene.
+  const std::optional<Environment>& environment() const noexcept { return environment_; }
 
  private:
   void upload(rhi::Device& device, const Scene& scene);
+  void upload_lights(rhi::Device& device, rhi::CommandList& list, std::span<const Emitter> punctual);
   void create_structures(rhi::Device& device, rhi::CommandList& list, const Scene& scene);
 
   std::uint32_t triangle_count_ = 0;
   std::uint32_t opaque_count_ = 0;
+  std::string name_;
+  std::vector<Emitter> emitters_;  ///< the lights that stay
+  double radius_ = 0;              ///< of the scene
   std::uint32_t light_count_ = 0;
   std::uint32_t environment_light_ = no_light;
   Features features_ = 0;

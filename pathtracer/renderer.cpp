@@ -47,14 +47,17 @@ Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSet
 
 void Renderer::choose_program(const RenderSettings& settings) {
   const Features features = scene_.features() | features_of(settings);
-  if (program_ && program_->features() == built_features(features)) return;
-  program_.emplace(*device_, trace_, features);
+  if (!program_ || program_->features() != built_features(features)) {
+    program_.emplace(*device_, trace_, features);
+    scene_group_ = nullptr;
+    picture_group_ = nullptr;
+  }
+  if (scene_group_) return;
   scene_group_ =
       device_->create_bind_group({.pipeline = program_->pipeline(),
                                   .set = 0,
                                   .entries = scene_.entries(program_->pipeline()->interface(), constants_buffer_),
                                   .label = "scene"});
-  picture_group_ = nullptr;
 }
 
 double Renderer::execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record) {
@@ -79,10 +82,13 @@ void Renderer::restart(const RenderSettings& settings) {
   choose_program(completed);
   const bool resized = !picture_group_ || settings.width != settings_.width || settings.height != settings_.height;
   settings_ = settings;
-  background_ = settings.background.value_or(glm::vec3(scene_.light_count() == 0 ? 1.0f : 0.0f));
   warnings_.clear();
-  if (scene_.light_count() == 0 && !settings.background)
+  background_ = scene_.environment() ? scene_.environment()->radiance : glm::vec3(0);
+  if (settings.background) background_ = *settings.background;
+  if (scene_.light_count() == 0 && !scene_.environment() && !settings.background) {
+    background_ = glm::vec3(1);
     warnings_.push_back(fmt::format("{}: nothing emits light, so a white background of radiance 1 does", scene_name_));
+  }
   constants_.background = background_;
   scene_.describe(constants_);
   set_options(constants_, settings);
@@ -101,6 +107,12 @@ void Renderer::restart(const RenderSettings& settings) {
   }
   pace_ = Pace(settings.submission_seconds);
   clear_picture();
+}
+
+void Renderer::set_lights(std::span<const PunctualLight> lights) {
+  scene_.set_lights(*device_, lights);
+  scene_group_ = nullptr;
+  restart(settings_);
 }
 
 void Renderer::clear_picture() {

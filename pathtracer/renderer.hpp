@@ -42,6 +42,10 @@ class Renderer {
   /// Empties the picture and renders with other settings from now on.
   void restart(const RenderSettings& settings);
 
+  /// Empties the picture and renders with other lights without extent from now on, in the place of those that the scene
+  /// came with. Builds no acceleration structure. Throws Error for numbers out of range; nothing has changed then.
+  void set_lights(std::span<const PunctualLight> lights);
+
   /// The mean of the samples; black before the first.
   Image image() const;
   std::uint32_t samples() const noexcept { return samples_; }
