@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -15,6 +16,13 @@ struct Image {
   std::vector<glm::vec3> pixels;  ///< width * height
 
   const glm::vec3& at(std::uint32_t x, std::uint32_t y) const { return pixels[std::size_t{y} * width + x]; }
+};
+
+/// Numbers that a picture has beside its colours, one for each pixel: floats, or whole numbers of 32 bits.
+struct ImageChannel {
+  std::string name;  ///< "layer.channel", as OpenEXR has it
+  bool is_integer = false;
+  std::vector<std::uint32_t> words;  ///< the whole numbers, or the bits of the floats
 };
 
 }  // namespace tandem::pathtracer

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <glm/vec3.hpp>
+#include "pathtracer/image.hpp"
 
 /// The formats of picture files. By OpenImageIO, or, for programs that are carried to other machines (OpenImageIO comes
 /// with hundreds of libraries), by tinyexr and libpng: the CMake variable TANDEM_IMAGE_LIBRARY chooses.
@@ -17,9 +17,9 @@ namespace tandem::pathtracer {
 /// Strings that a file holds beside its pixels.
 using ImageAttributes = std::map<std::string, std::string>;
 
-/// An OpenEXR file of 32-bit floats R, G and B. @param pixels width * height of them, linear, row by row from the top
-/// Throws Error with the reason alone.
-std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> pixels,
+/// An OpenEXR file of 32-bit floats or whole numbers. @param channels each of width * height words, row by row from the
+/// top. Throws Error with the reason alone.
+std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const ImageChannel> channels,
                                   const ImageAttributes& attributes);
 
 /// A PNG file of 8 bits, tagged sRGB. @param rgb 3 * width * height bytes. Throws Error with the reason alone.

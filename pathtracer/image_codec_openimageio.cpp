@@ -11,18 +11,18 @@
 namespace tandem::pathtracer {
 namespace {
 
-std::vector<std::byte> encode(const char* format, std::uint32_t width, std::uint32_t height, OIIO::TypeDesc type,
-                              const void* pixels, const char* color_space, const ImageAttributes& attributes) {
+/// @param pixels in the types of the channels
+std::vector<std::byte> encode(const char* format, OIIO::ImageSpec spec, const void* pixels, const char* color_space,
+                              const ImageAttributes& attributes) {
   const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create(format);
   if (!output) throw Error(OIIO::geterror());
-  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, type);
   spec.attribute("oiio:ColorSpace", color_space);
   for (const auto& [key, value] : attributes) spec.attribute(key, value);
   // Into memory first: OpenImageIO's own files do not say when a full disk took only half of one.
   std::vector<unsigned char> file;
   OIIO::Filesystem::IOVecOutput memory(file);
   if (!output->set_ioproxy(&memory) || !output->open(std::string("picture.") + format, spec) ||
-      !output->write_image(type, pixels) || !output->close())
+      !output->write_image(OIIO::TypeDesc::UNKNOWN, pixels) || !output->close())
     throw Error(output->geterror());
   const std::span<const std::byte> bytes = std::as_bytes(std::span(file));
   return {bytes.begin(), bytes.end()};
@@ -76,14 +76,24 @@ DecodedImage decode(OIIO::ImageInput& input) {
 
 }  // namespace
 
-std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> pixels,
+std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const ImageChannel> channels,
                                   const ImageAttributes& attributes) {
-  return encode("exr", width, height, OIIO::TypeDesc::FLOAT, pixels.data(), "Linear", attributes);
+  OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels.size()),
+                       OIIO::TypeDesc::FLOAT);
+  spec.channelnames.clear();
+  for (const ImageChannel& channel : channels) {
+    spec.channelnames.push_back(channel.name);
+    spec.channelformats.push_back(channel.is_integer ? OIIO::TypeDesc::UINT32 : OIIO::TypeDesc::FLOAT);
+  }
+  std::vector<std::uint32_t> pixels(std::size_t{width} * height * channels.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = channels[i % channels.size()].words[i / channels.size()];
+  return encode("exr", spec, pixels.data(), "Linear", attributes);
 }
 
 std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgb,
                                   const ImageAttributes& attributes) {
-  return encode("png", width, height, OIIO::TypeDesc::UINT8, rgb.data(), "sRGB", attributes);
+  const OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
+  return encode("png", spec, rgb.data(), "sRGB", attributes);
 }
 
 DecodedImage decode_image(const std::filesystem::path& path) {

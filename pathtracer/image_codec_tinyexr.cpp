@@ -181,20 +181,18 @@ DecodedImage decode_png(std::span<const std::byte> file) {
 
 }  // namespace
 
-std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const glm::vec3> pixels,
+std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const ImageChannel> channels,
                                   const ImageAttributes& attributes) {
-  constexpr std::size_t channel_count = 3;
   // OpenEXR keeps channels apart, and in the order of their names.
-  std::array<std::vector<float>, channel_count> planes;
-  std::array<unsigned char*, channel_count> plane_pointers;
-  std::array<EXRChannelInfo, channel_count> channels{};
-  std::array<int, channel_count> types;
-  types.fill(TINYEXR_PIXELTYPE_FLOAT);
-  for (std::size_t i = 0; i < channel_count; ++i) {
-    const std::size_t component = channel_count - 1 - i;
-    std::strcpy(channels[i].name, channel_names[channel_count][component]);
-    for (const glm::vec3& pixel : pixels) planes[i].push_back(pixel[static_cast<int>(component)]);
-    plane_pointers[i] = reinterpret_cast<unsigned char*>(planes[i].data());
+  std::vector<ImageChannel> planes(channels.begin(), channels.end());
+  std::ranges::sort(planes, {}, &ImageChannel::name);
+  std::vector<unsigned char*> plane_pointers;
+  std::vector<EXRChannelInfo> infos(planes.size());
+  std::vector<int> types;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    planes[i].name.copy(infos[i].name, sizeof(infos[i].name) - 1);
+    plane_pointers.push_back(reinterpret_cast<unsigned char*>(planes[i].words.data()));
+    types.push_back(planes[i].is_integer ? TINYEXR_PIXELTYPE_UINT : TINYEXR_PIXELTYPE_FLOAT);
   }
   std::vector<EXRAttribute> stored;
   std::vector<std::string> values;  // tinyexr wants pointers to what may be changed
@@ -211,8 +209,8 @@ std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std
   // These point into what is above, so nothing of tinyexr's may free them.
   EXRHeader header;
   InitEXRHeader(&header);
-  header.num_channels = channel_count;
-  header.channels = channels.data();
+  header.num_channels = static_cast<int>(planes.size());
+  header.channels = infos.data();
   header.pixel_types = types.data();
   header.requested_pixel_types = types.data();
   header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
@@ -222,7 +220,7 @@ std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std
   InitEXRImage(&image);
   image.width = static_cast<int>(width);
   image.height = static_cast<int>(height);
-  image.num_channels = channel_count;
+  image.num_channels = static_cast<int>(planes.size());
   image.images = plane_pointers.data();
   unsigned char* memory = nullptr;
   Reason why;

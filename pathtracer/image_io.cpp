@@ -1,10 +1,12 @@
 #include "pathtracer/image_io.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pathtracer/atomic_file.hpp"
@@ -32,25 +34,38 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 
 }  // namespace
 
+std::vector<ImageChannel> color_channels(const Image& image) {
+  std::vector<ImageChannel> channels;
+  for (int component = 0; component < 3; ++component) {
+    ImageChannel channel{.name = std::string(1, "RGB"[component]), .is_integer = false, .words = {}};
+    for (const glm::vec3& pixel : image.pixels) channel.words.push_back(std::bit_cast<std::uint32_t>(pixel[component]));
+    channels.push_back(std::move(channel));
+  }
+  return channels;
+}
+
 void check_image_path(const std::filesystem::path& path) {
   format_of(path);
   const AtomicFile probe(path);
 }
 
-void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata,
-                 const Tone& tone) {
+void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata, const Tone& tone,
+                 std::span<const ImageChannel> layers) {
   const Format format = format_of(path);
   const auto fail = [&](const std::string& why) {
     return Error("cannot write '" + path.string() + "': " + first_line(why));
   };
   if (image.pixels.empty()) throw fail("the image is empty");
+  if (format != Format::exr && !layers.empty()) throw fail("only an .exr has layers");
   AtomicFile target(path);
   ImageAttributes attributes;
   for (const auto& [key, value] : metadata) attributes.emplace(std::string(metadata_prefix) + key, value);
   std::vector<std::byte> file;
   try {
     if (format == Format::exr) {
-      file = encode_exr(image.width, image.height, image.pixels, attributes);
+      std::vector<ImageChannel> channels = color_channels(image);
+      channels.insert(channels.end(), layers.begin(), layers.end());
+      file = encode_exr(image.width, image.height, channels, attributes);
     } else {
       std::vector<std::uint8_t> encoded;
       encoded.reserve(3 * image.pixels.size());

@@ -2,7 +2,9 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "pathtracer/image.hpp"
 #include "pathtracer/tone_map.hpp"
@@ -13,14 +15,18 @@ namespace tandem::pathtracer {
 /// named "tandem:<key>".
 using ImageMetadata = std::map<std::string, std::string>;
 
+/// The colours of a picture as the channels R, G and B.
+std::vector<ImageChannel> color_channels(const Image& image);
+
 /// Throws Error, naming the file, unless write_image could write there now: the extension must be .exr or .png, the
 /// folder must exist and take a new file, and the path must not be a folder. To be called before a long rendering.
 void check_image_path(const std::filesystem::path& path);
 
 /// Writes 32-bit float OpenEXR, or PNG of 8 bits through the tone curve (NaN becomes black). The file appears whole,
 /// replacing an older one, or not at all. Throws Error.
+/// @param layers further channels of an OpenEXR file
 void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata,
-                 const Tone& tone = {});
+                 const Tone& tone = {}, std::span<const ImageChannel> layers = {});
 
 /// The pixels, PNG decoded to linear as if its curve were that of sRGB, and the metadata that write_image stored when
 /// `metadata` is given. Throws Error.

@@ -1,11 +1,14 @@
 #include "pathtracer/image_io.hpp"
 
+#include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include <doctest/doctest.h>
 
 #include "pathtracer/error.hpp"
+#include "pathtracer/image_codec.hpp"
 #include "pathtracer/srgb.hpp"
 #include "tests/pathtracer/scratch_folder.hpp"
 
@@ -37,6 +40,27 @@ TEST_CASE("OpenEXR keeps every bit and the metadata") {
   CHECK(read.pixels == image.pixels);
   CHECK(stored == metadata);
   CHECK(folder.size() == 1);
+}
+
+TEST_CASE("OpenEXR holds layers beside the picture, which stays what it is; PNG has none") {
+  const ScratchFolder folder;
+  const Image image = ramp(5, 3);
+  ImageChannel depth{.name = "depth.Z", .is_integer = false, .words = {}};
+  ImageChannel id{.name = "id.primitive", .is_integer = true, .words = {}};
+  for (std::uint32_t i = 0; i < 15; ++i) {
+    depth.words.push_back(std::bit_cast<std::uint32_t>(0.5f * float(i)));
+    id.words.push_back(0xfffffff0u + i);  // floats cannot hold these
+  }
+  const ImageChannel layers[] = {depth, id};
+  write_image(folder.path() / "layers.exr", image, {}, {}, layers);
+  CHECK(read_image(folder.path() / "layers.exr").pixels == image.pixels);
+  const std::vector<ImageChannel> channels = color_channels(image);
+  std::vector<ImageChannel> all = channels;
+  all.insert(all.end(), std::begin(layers), std::end(layers));
+  // Five channels of four bytes each do not fit into three.
+  CHECK(encode_exr(5, 3, all, {}).size() > encode_exr(5, 3, channels, {}).size());
+  CHECK_THROWS_WITH_AS(write_image(folder.path() / "layers.png", image, {}, {}, layers),
+                       doctest::Contains("only an .exr has layers"), Error);
 }
 
 TEST_CASE("PNG is sRGB-encoded, clamped and keeps the metadata") {

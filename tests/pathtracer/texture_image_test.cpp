@@ -9,6 +9,7 @@
 
 #include "pathtracer/error.hpp"
 #include "pathtracer/image_codec.hpp"
+#include "pathtracer/image_io.hpp"
 #include "pathtracer/srgb.hpp"
 #include "tests/pathtracer/scratch_folder.hpp"
 
@@ -88,7 +89,7 @@ TEST_CASE("Sixteen bits stay as data, and become linear floats as colours") {
 TEST_CASE("Floats stay as they are, but for what no shader may meet") {
   const float infinity = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<glm::vec3> pixels = {{17.25f, 1e-30f, -2}, {infinity, nan, 1e-40f}};
-  const std::vector<std::byte> file = encode_exr(2, 1, pixels, {});
+  const std::vector<std::byte> file = encode_exr(2, 1, color_channels({2, 1, pixels}), {});
   const TextureImage data = decode_texture_image(file, "sky", TextureEncoding::data);
   CHECK(data.name == "sky");
   CHECK(data.format == TexelFormat::float32);
