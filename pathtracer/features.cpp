@@ -33,6 +33,9 @@ Features features_of(const Scene& scene) {
   for (const GpuMaterial& material : scene.materials) {
     if (is_transparent(material)) features |= feature::transparency;
     if (has_texture(material)) features |= feature::textures;
+    // Images as opacities need no more than transparency.
+    if (material.alpha_texture != no_texture && scene.textures[material.alpha_texture].gpu.kind != TextureKind::image)
+      features |= feature::textures;
     if (!is_basic(material.model)) features |= feature::materials;
   }
   if (!scene.spheres.empty()) features |= feature::spheres;

@@ -57,9 +57,11 @@ glm::vec4 rgba(const DecodedImage& image, std::size_t pixel) {
   }
 }
 
-/// Shaders must not meet infinities or NaNs, nor subnormal numbers, which a device may flush to zero.
+/// Less than this counts as 0, so that filtering makes no subnormal numbers, which a device may flush to zero.
+constexpr float smallest_value = 1e-20f;
+
 float clean(float value, TextureEncoding encoding) {
-  if (!std::isnormal(value)) return 0;
+  if (!std::isfinite(value) || std::abs(value) < smallest_value) return 0;
   return encoding == TextureEncoding::color ? std::max(value, 0.0f) : value;
 }
 

@@ -59,6 +59,9 @@ precise float det_sqrt(float x) {
   return root;
 }
 
+/// x in [0, 1]; NaN gives 0.
+float clamp_unit(float x) { return x > 0.0 ? (x < 1.0 ? x : 1.0) : 0.0; }
+
 precise float det_dot(vec3 a, vec3 b) { return (a.x * b.x + a.y * b.y) + a.z * b.z; }
 
 precise vec3 det_cross(vec3 a, vec3 b) {

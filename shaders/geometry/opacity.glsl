@@ -17,10 +17,14 @@ precise float opacity_at(uint triangle_index, vec2 barycentrics) {
   uint material = triangle.material & ~TRIANGLE_SMOOTH;
   float opacity = materials[material].opacity;
   uint texture_index = materials[material].alpha_texture;
-  if (texture_index == NO_TEXTURE) return opacity;
-  vec2 uv = surface_texture_coordinates(triangle.vertices, barycentrics);
-  vec3 position = barycentric_point(triangle_vertices(triangle.vertices), barycentrics);
-  return opacity * texture_value(texture_index, uv, position);
+  if (texture_index != NO_TEXTURE) {
+    vec2 uv = surface_texture_coordinates(triangle.vertices, barycentrics);
+    vec3 position = barycentric_point(triangle_vertices(triangle.vertices), barycentrics);
+    opacity *= texture_value(texture_index, uv, position);
+  }
+  float cutoff = materials[material].alpha_cutoff;
+  if (cutoff > 0.0) return opacity >= cutoff ? 1.0 : 0.0;
+  return opacity;
 }
 
 /// Whether a ray meets a triangle that lies on it. The answer depends on nothing else, so it is the same in a loop over

@@ -4,6 +4,7 @@
 #ifndef TANDEM_GEOMETRY_SURFACE
 #define TANDEM_GEOMETRY_SURFACE
 
+#include "geometry/normal_map.glsl"
 #include "geometry/offset_ray.glsl"
 #include "geometry/triangle.glsl"
 #include "scene.glsl"
@@ -28,6 +29,14 @@ precise vec2 surface_texture_coordinates(uvec3 vertices, vec2 barycentrics) {
   return (vertex_texture_coordinates(vertices.x) * ((1.0 - barycentrics.x) - barycentrics.y) +
           vertex_texture_coordinates(vertices.y) * barycentrics.x) +
          vertex_texture_coordinates(vertices.z) * barycentrics.y;
+}
+
+/// How the texture coordinates of a triangle go with its points.
+precise SurfaceDerivatives surface_derivatives(uvec3 vertices, TriangleVertices triangle) {
+  vec2 uv = vertex_texture_coordinates(vertices.x);
+  return triangle_derivatives(triangle.b - triangle.a, triangle.c - triangle.a,
+                              vertex_texture_coordinates(vertices.y) - uv,
+                              vertex_texture_coordinates(vertices.z) - uv);
 }
 
 struct Surface {
@@ -67,6 +76,15 @@ precise Surface surface_at(uint primitive, vec3 origin, vec3 direction, float ti
     if (det_dot(smooth_normal, surface.geometric_normal) < 0.0) smooth_normal = -smooth_normal;
     // Seen from behind an interpolated normal means nothing: near silhouettes the geometric one takes over.
     if (det_dot(smooth_normal, direction) < 0.0) surface.shading_normal = smooth_normal;
+  }
+  if (has_normal_map(surface.material)) {
+    precise vec3 front = surface.outside ? surface.shading_normal : -surface.shading_normal;
+    precise vec3 mapped = mapped_normal(surface.material, front, surface_derivatives(vertices, triangle),
+                                        surface.texture_coordinates, surface.position);
+    if (!surface.outside) mapped = -mapped;
+    // Seen from behind, or turned into the surface, it means as little as an interpolated one.
+    bool meaningful = det_dot(mapped, direction) < 0.0 && det_dot(mapped, surface.geometric_normal) > 0.0;
+    if (meaningful) surface.shading_normal = mapped;
   }
   return surface;
 }

@@ -11,9 +11,6 @@ struct TriangleVertices {
   vec3 c;
 };
 
-/// x in [0, 1]; NaN gives 0.
-float clamp_unit(float x) { return x > 0.0 ? (x < 1.0 ? x : 1.0) : 0.0; }
-
 /// The barycentric coordinates of the second and third vertex where a ray meets the plane of a triangle (Möller and
 /// Trumbore 1997), moved into the triangle where rounding put them outside. The centre for a ray in the plane and for a
 /// degenerate triangle.
