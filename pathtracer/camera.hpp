@@ -21,6 +21,8 @@ struct Camera {
   float lens_radius = 0;      ///< perspective: 0 is a pinhole
   float focus_distance = 0;   ///< along the view, to what is sharp; 0: that of the target
   glm::vec3 motion{0};        ///< of the position while the shutter is open; the view keeps its direction
+
+  bool operator==(const Camera&) const = default;
 };
 
 /// Sets the members of a camera. Throws Error for one that looks nowhere or a number out of range.

@@ -43,6 +43,8 @@ struct RenderSettings {
   double submission_seconds = 0.25;
   /// Side of the largest tile of one submission in pixels, 0 for no bound. It never changes the picture.
   std::uint32_t maximum_tile = 0;
+
+  bool operator==(const RenderSettings&) const = default;
 };
 
 /// Throws Error for a size or depth of 0 or one that no device can take, and for numbers out of range; a camera is
