@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "pathtracer/environment.hpp"
 #include "pathtracer/error.hpp"
@@ -77,6 +78,36 @@ std::vector<std::uint32_t> lights_of_primitives(const Scene& scene, std::span<co
   return of_primitives;
 }
 
+/// What tells instances apart: their custom index, and the hit record of their primitives.
+constexpr std::uint32_t triangle_instance = 0;
+constexpr std::uint32_t sphere_instance = 1;
+
+/// The box of each sphere wherever it moves, a little larger, so that no device's rounding loses a ray that touches the
+/// sphere.
+std::vector<Bounds> boxes_of(const std::vector<GpuSphere>& spheres) {
+  constexpr float margin = 1e-5f;
+  std::vector<Bounds> boxes;
+  boxes.reserve(spheres.size());
+  for (const GpuSphere& sphere : spheres) {
+    const glm::vec3 end = sphere.centre + sphere.motion;
+    const glm::vec3 reach = sphere.radius + margin * (glm::max(glm::abs(sphere.centre), glm::abs(end)) + sphere.radius);
+    boxes.push_back({glm::min(sphere.centre, end) - reach, glm::max(sphere.centre, end) + reach});
+  }
+  return boxes;
+}
+static_assert(sizeof(Bounds) == 6 * sizeof(float));
+
+rhi::BottomLevelDesc describe_spheres(rhi::Device& device, rhi::CommandList& list, const Scene& scene) {
+  rhi::AabbGeometry geometry;
+  geometry.boxes = {upload_all(device, list, boxes_of(scene.spheres), rhi::BufferUsage::acceleration_structure_input,
+                               "boxes of spheres")};
+  geometry.box_count = static_cast<std::uint32_t>(scene.spheres.size());
+  rhi::BottomLevelDesc desc;
+  desc.geometries.emplace_back(geometry);
+  desc.label = scene.name + ", spheres";
+  return desc;
+}
+
 }  // namespace
 
 Scene in_device_order(const Scene& scene) {
@@ -90,7 +121,9 @@ DeviceScene::DeviceScene(rhi::Device& device, const Scene& scene)
     : triangle_count_(static_cast<std::uint32_t>(scene.triangles.size())),
       features_(features_of(scene)),
       environment_(scene.environment),
-      medium_(scene.medium) {
+      medium_(scene.medium),
+      moves_(
+          std::ranges::any_of(scene.spheres, [](const GpuSphere& sphere) { return sphere.motion != glm::vec3(0); })) {
   const auto is_opaque = [&](const GpuTriangle& triangle) { return !is_transparent(scene, triangle); };
   opaque_count_ = static_cast<std::uint32_t>(std::ranges::count_if(scene.triangles, is_opaque));
   if (opaque_count_ < triangle_count_)
@@ -111,7 +144,7 @@ void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   const auto store = [&](auto values, const char* label) {
     return upload_all(device, *list, never_empty(std::move(values)), BufferUsage::storage, label);
   };
-  positions_ = upload_all(device, *list, scene.positions,
+  positions_ = upload_all(device, *list, never_empty(scene.positions),
                           BufferUsage::storage | BufferUsage::acceleration_structure_input, "positions");
   normals_ = store(scene.normals, "normals");
   triangles_ = store(scene.triangles, "triangles");
@@ -154,9 +187,12 @@ void DeviceScene::describe(RenderConstants& constants) const {
   constants.environment_texture = environment_ ? environment_->texture : no_texture;
   if (environment_) set_environment_frame(constants, *environment_);
   constants.medium = medium_;
+  if (moves_) constants.shutter = 1;
 }
 
-void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list, const Scene& scene) {
+rhi::BottomLevelDesc DeviceScene::describe_triangles(rhi::Device& device, rhi::CommandList& list,
+                                                     const Scene& scene) const {
+  rhi::BottomLevelDesc desc;
   std::vector<std::uint32_t> indices;
   indices.reserve(3 * scene.triangles.size());
   for (const GpuTriangle& triangle : scene.triangles)
@@ -174,26 +210,38 @@ void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list,
     geometry.index_format = rhi::IndexFormat::uint32;
     geometry.triangle_count = count;
     geometry.flags = flags;
-    bottom_.geometries.emplace_back(geometry);
+    desc.geometries.emplace_back(geometry);
   };
   add_geometry(0, opaque_count_, rhi::GeometryFlags::opaque);
   if (opaque_count_ < triangle_count_)
     add_geometry(opaque_count_, triangle_count_ - opaque_count_, rhi::GeometryFlags::none);
-  bottom_.label = scene.name;
-  bottom_level_ = device.create_bottom_level(bottom_);
+  desc.label = scene.name;
+  return desc;
+}
 
-  const std::vector<rhi::InstanceDesc> instances = {rhi::make_instance(*bottom_level_)};
+void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list, const Scene& scene) {
+  std::vector<rhi::InstanceDesc> instances;
+  const auto add_instance = [&](rhi::BottomLevelDesc desc, std::uint32_t kind) {
+    bottom_levels_.push_back({device.create_bottom_level(desc), std::move(desc)});
+    rhi::InstanceDesc& instance = instances.emplace_back(rhi::make_instance(*bottom_levels_.back().structure));
+    instance.custom_index = kind & 1;
+    instance.sbt_offset = kind & 1;
+  };
+  if (!scene.triangles.empty()) add_instance(describe_triangles(device, list, scene), triangle_instance);
+  if (!scene.spheres.empty()) add_instance(describe_spheres(device, list, scene), sphere_instance);
   top_.instances.buffer =
       upload_all(device, list, instances, rhi::BufferUsage::acceleration_structure_input, "instances");
-  top_.instance_count = 1;
+  top_.instance_count = static_cast<std::uint32_t>(instances.size());
   top_.label = scene.name;
   top_level_ = device.create_top_level(top_);
 }
 
 void DeviceScene::record_build(rhi::CommandList& list) {
-  list.build_bottom_level(bottom_level_, bottom_);
+  for (BottomLevel& bottom_level : bottom_levels_) {
+    list.build_bottom_level(bottom_level.structure, bottom_level.desc);
+    bottom_level.desc = {};
+  }
   list.build_top_level(top_level_, top_);
-  bottom_ = {};
   top_ = {};
 }
 

@@ -33,7 +33,8 @@ class DeviceScene {
   /// @param constants a buffer of one RenderConstants
   std::vector<rhi::BindGroupEntry> entries(const rhi::PipelineInterface& interface,
                                            const rhi::BufferHandle& constants) const;
-  /// Sets the members that describe the scene: counts, the environment and its light, the medium.
+  /// Sets the members that describe the scene: counts, the environment and its light, the medium; and `shutter` where
+  /// something moves.
   void describe(RenderConstants& constants) const;
 
   std::uint32_t triangle_count() const noexcept { return triangle_count_; }
@@ -49,6 +50,7 @@ class DeviceScene {
   void upload(rhi::Device& device, const Scene& scene);
   void upload_lights(rhi::Device& device, rhi::CommandList& list, std::span<const Emitter> punctual);
   void create_structures(rhi::Device& device, rhi::CommandList& list, const Scene& scene);
+  rhi::BottomLevelDesc describe_triangles(rhi::Device& device, rhi::CommandList& list, const Scene& scene) const;
 
   std::uint32_t triangle_count_ = 0;
   std::uint32_t opaque_count_ = 0;
@@ -60,11 +62,17 @@ class DeviceScene {
   Features features_ = 0;
   std::optional<Environment> environment_;
   std::uint32_t medium_ = no_medium;
+  bool moves_ = false;
   rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_, texture_coordinates_, textures_, texels_,
       primitive_lights_, spheres_, environment_cells_, media_;
-  rhi::BottomLevelDesc bottom_;
+  /// A bottom level and what to build it from, until it is built.
+  struct BottomLevel {
+    rhi::AccelerationStructureHandle structure;
+    rhi::BottomLevelDesc desc;
+  };
+  std::vector<BottomLevel> bottom_levels_;  ///< of the triangles and of the spheres, where there are any
   rhi::TopLevelDesc top_;
-  rhi::AccelerationStructureHandle bottom_level_, top_level_;
+  rhi::AccelerationStructureHandle top_level_;
 };
 
 }  // namespace tandem::pathtracer

@@ -43,7 +43,8 @@ rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoin
                                          .label = "path tracer"});
 }
 
-/// One ray generation, one miss and one hit record: rays of both kinds share them.
+/// One ray generation and one miss record, and one hit record for triangles and one for spheres: rays of both kinds
+/// share them.
 rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_generation, Features features) {
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
     return device.create_shader_module({spirv, label});
@@ -55,13 +56,19 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_g
   group.closest_hit = module(shaders::path_trace_rchit(), "path_trace.rchit");
   if ((features & feature::transparency) != 0) group.any_hit = module(shaders::path_trace_rahit(), "path_trace.rahit");
   desc.hit_groups = {group};
+  if ((features & feature::spheres) != 0)
+    desc.hit_groups.push_back({.closest_hit = group.closest_hit,
+                               .any_hit = {},
+                               .intersection = module(shaders::path_trace_rint(), "path_trace.rint")});
   desc.specialization = specialization(features);
   desc.label = "path tracer";
   const rhi::ShaderRecords one{.records = {rhi::ShaderRecord{}}};
+  rhi::ShaderRecords hit;
+  for (std::uint32_t i = 0; i < desc.hit_groups.size(); ++i) hit.records.push_back({.shader = i, .data = {}});
   return device.create_shader_table({.pipeline = device.create_ray_tracing_pipeline(desc),
                                      .ray_generation = one,
                                      .miss = one,
-                                     .hit = one,
+                                     .hit = hit,
                                      .callable = {},
                                      .label = "path tracer"});
 }

@@ -10,7 +10,7 @@
 namespace tandem::pathtracer {
 
 enum class RayKind : std::uint32_t {
-  closest = 0,   ///< which triangle is the first?
+  closest = 0,   ///< which primitive is the first?
   occlusion = 1  ///< is there any?
 };
 
@@ -23,7 +23,9 @@ struct TracedRay {
   float t_max = 0;  ///< in lengths of the direction
   glm::vec3 direction{0};
   RayKind kind = RayKind::closest;
-  std::uint32_t answer = no_triangle;  ///< closest: triangle (in_device_order), or no_triangle; occlusion: 1 or 0
+  /// Closest: the triangle (in_device_order), or the number of triangles + the sphere, or no_triangle; occlusion: 1 or
+  /// 0.
+  std::uint32_t answer = no_triangle;
   /// What decides which transparent triangles the ray meets; see shaders/random.glsl.
   std::uint32_t random_pixel = 0;
   std::uint32_t random_sample = 0;

@@ -7,6 +7,7 @@
 
 #include "bsdf/bsdf.glsl"
 #include "camera/pinhole.glsl"
+#include "camera/shutter.glsl"
 #include "geometry/frame.glsl"
 #include "geometry/surface.glsl"
 #include "light/light.glsl"
@@ -30,7 +31,7 @@ precise vec3 drop_negligible(vec3 v) {
 /// the choice. `depth` is that of the segment that ends at the surface.
 precise vec3 direct_light(Surface surface, BsdfParameters parameters, uint primitive, Frame frame, vec3 wo,
                           RandomKey key, uint depth, inout uint ray_count) {
-  LightSample light = sample_light(surface.position, random_bits(key, light_dimension(depth)), 0.0);
+  LightSample light = sample_light(surface.position, random_bits(key, light_dimension(depth)), shutter_time(key));
   if (light.primitive == primitive || max_component(light.radiance) == 0.0) return vec3(0.0);
   if (!(det_dot(light.direction, surface.geometric_normal) > 0.0)) return vec3(0.0);
   precise vec3 wi = to_local(frame, light.direction);
@@ -76,7 +77,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
       radiance += throughput * render.background;
       break;
     }
-    Surface surface = surface_at(primitive, origin, direction, 0.0);
+    Surface surface = surface_at(primitive, origin, direction, shutter_time(key));
     if (count_emission) radiance += throughput * materials[surface.material].emission;
     if (depth + 1 == render.max_depth) break;
 

@@ -13,7 +13,8 @@ struct RandomKey {
 
 // The dimensions of a path: one for the camera, then two for each vertex. Each holds four numbers. Those of rays that
 // transparent triangles may let pass have a range of their own.
-const uint DIMENSION_CAMERA = 0;
+const uint DIMENSION_CAMERA = 0;          // the point on the film (x, y) and on the lens (z, w)
+const uint DIMENSION_TIME = 0x40000000u;  // when, while the shutter is open (x)
 
 /// Of the vertex at the end of path segment `depth` (0: the camera ray): the scattered direction (x, y, z) and roulette
 /// (w).

@@ -4,27 +4,24 @@
 #ifndef TANDEM_GEOMETRY_OPACITY
 #define TANDEM_GEOMETRY_OPACITY
 
+#include "geometry/material_opacity.glsl"
 #include "geometry/surface.glsl"
 #include "geometry/triangle.glsl"
 #include "random.glsl"
 #include "scene.glsl"
-#include "texture/texture.glsl"
 
 /// The fraction of rays through this point of a triangle that it covers, in [0, 1].
 precise float opacity_at(uint triangle_index, vec2 barycentrics) {
   if (!FEATURE_TRANSPARENCY) return 1.0;
   Triangle triangle = triangles[triangle_index];
   uint material = triangle.material & ~TRIANGLE_SMOOTH;
-  float opacity = materials[material].opacity;
-  uint texture_index = materials[material].alpha_texture;
-  if (texture_index != NO_TEXTURE) {
-    vec2 uv = surface_texture_coordinates(triangle.vertices, barycentrics);
-    vec3 position = barycentric_point(triangle_vertices(triangle.vertices), barycentrics);
-    opacity *= texture_value(texture_index, uv, position);
+  vec2 uv = vec2(0.0);
+  vec3 position = vec3(0.0);
+  if (materials[material].alpha_texture != NO_TEXTURE) {
+    uv = surface_texture_coordinates(triangle.vertices, barycentrics);
+    position = barycentric_point(triangle_vertices(triangle.vertices), barycentrics);
   }
-  float cutoff = materials[material].alpha_cutoff;
-  if (cutoff > 0.0) return opacity >= cutoff ? 1.0 : 0.0;
-  return opacity;
+  return material_opacity(material, uv, position);
 }
 
 /// Whether a ray meets a triangle that lies on it. The answer depends on nothing else, so it is the same in a loop over

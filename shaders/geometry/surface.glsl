@@ -1,11 +1,12 @@
-// The surface at a hit. The device only says which triangle a ray meets; where, and with which normals, is computed from
-// the vertices, the same way on every device.
+// The surface at a hit. The device only says which primitive a ray meets; where, and with which normals, is computed from
+// the vertices or the sphere, the same way on every device.
 
 #ifndef TANDEM_GEOMETRY_SURFACE
 #define TANDEM_GEOMETRY_SURFACE
 
 #include "geometry/normal_map.glsl"
 #include "geometry/offset_ray.glsl"
+#include "geometry/sphere_hit.glsl"
 #include "geometry/triangle.glsl"
 #include "scene.glsl"
 
@@ -44,13 +45,35 @@ struct Surface {
   vec3 geometric_normal;  // unit, on the side from which the ray came
   vec3 shading_normal;    // unit, likewise
   float offset;           // offset_distance of the position
-  bool outside;           // the ray came from the side of the triangle's own (counter-clockwise) normal
+  bool outside;           // the ray came from the side of a triangle's own (counter-clockwise) normal, or from out of a sphere
   uint material;
   vec2 texture_coordinates;  // with FEATURE_TEXTURES
 };
 
-/// The surface where a ray meets a primitive. `direction` has unit length; `time` in [0, 1] since the shutter opened.
-precise Surface surface_at(uint primitive, vec3 origin, vec3 direction, float time) {
+/// surface_at for a sphere, without its normal map.
+precise Surface sphere_surface(uint sphere_index, vec3 origin, vec3 direction, float time,
+                               out SurfaceDerivatives derivatives) {
+  vec3 centre = sphere_centre(sphere_index, time);
+  float radius = spheres[sphere_index].radius;
+  float t = sphere_hit(sphere_index, origin, direction, time);
+  // The ray was traced with a direction of another length, and touches the sphere: rounding decided.
+  if (t < 0.0) t = det_dot(centre - origin, direction);
+  precise vec3 normal = sphere_normal(centre, origin, direction, t);
+  Surface surface;
+  surface.material = spheres[sphere_index].material;
+  surface.position = centre + normal * radius;
+  surface.outside = det_dot(normal, direction) <= 0.0;
+  surface.geometric_normal = surface.outside ? normal : -normal;
+  surface.shading_normal = surface.geometric_normal;
+  surface.offset = sphere_offset(centre, radius, normal);
+  surface.texture_coordinates = FEATURE_TEXTURES ? sphere_texture_coordinates(normal) : vec2(0.0);
+  derivatives.by_u = sphere_derivative_by_u(radius, normal);
+  derivatives.by_v = sphere_derivative_by_v(radius, normal);
+  return surface;
+}
+
+/// surface_at for a triangle, without its normal map.
+precise Surface triangle_surface(uint primitive, vec3 origin, vec3 direction, out SurfaceDerivatives derivatives) {
   uvec3 vertices = triangles[primitive].vertices;
   uint material = triangles[primitive].material;
   TriangleVertices triangle = triangle_vertices(vertices);
@@ -77,10 +100,25 @@ precise Surface surface_at(uint primitive, vec3 origin, vec3 direction, float ti
     // Seen from behind an interpolated normal means nothing: near silhouettes the geometric one takes over.
     if (det_dot(smooth_normal, direction) < 0.0) surface.shading_normal = smooth_normal;
   }
+  derivatives.by_u = vec3(0.0);
+  derivatives.by_v = vec3(0.0);
+  if (has_normal_map(surface.material)) derivatives = surface_derivatives(vertices, triangle);
+  return surface;
+}
+
+/// The surface where a ray meets a primitive. `direction` has unit length; `time` in [0, 1] since the shutter opened.
+precise Surface surface_at(uint primitive, vec3 origin, vec3 direction, float time) {
+  Surface surface;
+  SurfaceDerivatives derivatives;
+  if (FEATURE_SPHERES && primitive >= render.triangle_count) {
+    surface = sphere_surface(primitive - render.triangle_count, origin, direction, time, derivatives);
+  } else {
+    surface = triangle_surface(primitive, origin, direction, derivatives);
+  }
   if (has_normal_map(surface.material)) {
     precise vec3 front = surface.outside ? surface.shading_normal : -surface.shading_normal;
-    precise vec3 mapped = mapped_normal(surface.material, front, surface_derivatives(vertices, triangle),
-                                        surface.texture_coordinates, surface.position);
+    precise vec3 mapped = mapped_normal(surface.material, front, derivatives, surface.texture_coordinates,
+                                        surface.position);
     if (!surface.outside) mapped = -mapped;
     // Seen from behind, or turned into the surface, it means as little as an interpolated one.
     bool meaningful = det_dot(mapped, direction) < 0.0 && det_dot(mapped, surface.geometric_normal) > 0.0;

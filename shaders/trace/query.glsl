@@ -3,44 +3,55 @@
 #ifndef TANDEM_TRACE_QUERY
 #define TANDEM_TRACE_QUERY
 
+#include "camera/shutter.glsl"
 #include "geometry/opacity.glsl"
+#include "geometry/sphere_hit.glsl"
 #include "random.glsl"
 #include "trace/primitive_index.glsl"
 
 const uint OPACITY_FLAGS = FEATURE_TRANSPARENCY ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
 
-/// Index of the closest triangle along a ray, or NO_PRIMITIVE. The dimension belongs to this ray alone: it decides which
+// Both functions below have this loop: a query cannot be handed to a function on every device. What is generated must lie
+// before what is committed.
+#define TANDEM_PROCEED(query)                                                                                        \
+  while (rayQueryProceedEXT(query)) {                                                                                \
+    if (FEATURE_SPHERES &&                                                                                           \
+        rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionAABBEXT) {                   \
+      uint sphere_index = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, false));                              \
+      precise float t = sphere_hit(sphere_index, origin, direction, time);                                           \
+      bool committed = rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;       \
+      float bound = committed ? rayQueryGetIntersectionTEXT(query, true) : t_max;                                    \
+      if (t > 0.0 && t <= bound) rayQueryGenerateIntersectionEXT(query, t);                                          \
+    } else if (FEATURE_TRANSPARENCY) {                                                                               \
+      uint candidate = primitive_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),                  \
+                                       rayQueryGetIntersectionGeometryIndexEXT(query, false),                        \
+                                       rayQueryGetIntersectionPrimitiveIndexEXT(query, false));                      \
+      if (meets_triangle(candidate, origin, direction, random)) rayQueryConfirmIntersectionEXT(query);               \
+    }                                                                                                                \
+  }
+
+/// Index of the closest primitive along a ray, or NO_PRIMITIVE. The dimension belongs to this ray alone: it decides which
 /// transparent triangles the ray meets.
 uint closest_primitive(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   uint random = FEATURE_TRANSPARENCY ? random_bits(key, dimension).x : 0u;
+  precise float time = FEATURE_SPHERES ? shutter_time(key) : 0.0;
   rayQueryEXT query;
   rayQueryInitializeEXT(query, scene_tlas, OPACITY_FLAGS, 0xff, origin, 0.0, direction, t_max);
-  while (rayQueryProceedEXT(query)) {
-    if (!FEATURE_TRANSPARENCY) continue;
-    uint candidate = primitive_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
-                                    rayQueryGetIntersectionGeometryIndexEXT(query, false),
-                                    rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
-    if (meets_triangle(candidate, origin, direction, random)) rayQueryConfirmIntersectionEXT(query);
-  }
-  if (rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionTriangleEXT) return NO_PRIMITIVE;
+  TANDEM_PROCEED(query)
+  if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) return NO_PRIMITIVE;
   return primitive_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
-                        rayQueryGetIntersectionGeometryIndexEXT(query, true),
-                        rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
+                         rayQueryGetIntersectionGeometryIndexEXT(query, true),
+                         rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
 }
 
-/// Whether there is any triangle along a ray. The dimension as for closest_primitive.
+/// Whether there is any primitive along a ray. The dimension as for closest_primitive.
 bool is_occluded(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   uint random = FEATURE_TRANSPARENCY ? random_bits(key, dimension).x : 0u;
+  precise float time = FEATURE_SPHERES ? shutter_time(key) : 0.0;
   const uint flags = OPACITY_FLAGS | gl_RayFlagsTerminateOnFirstHitEXT | gl_RayFlagsSkipClosestHitShaderEXT;
   rayQueryEXT query;
   rayQueryInitializeEXT(query, scene_tlas, flags, 0xff, origin, 0.0, direction, t_max);
-  while (rayQueryProceedEXT(query)) {
-    if (!FEATURE_TRANSPARENCY) continue;
-    uint candidate = primitive_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
-                                    rayQueryGetIntersectionGeometryIndexEXT(query, false),
-                                    rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
-    if (meets_triangle(candidate, origin, direction, random)) rayQueryConfirmIntersectionEXT(query);
-  }
+  TANDEM_PROCEED(query)
   return rayQueryGetIntersectionTypeEXT(query, true) != gl_RayQueryCommittedIntersectionNoneEXT;
 }
 

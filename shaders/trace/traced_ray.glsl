@@ -11,7 +11,7 @@ struct TracedRay {
   float t_max;
   vec3 direction;
   uint kind;          // RAY_*
-  uint answer;        // closest: the triangle, or NO_PRIMITIVE; occlusion: 1 or 0
+  uint answer;        // closest: the primitive, or NO_PRIMITIVE; occlusion: 1 or 0
   uint pixel;         // of its RandomKey
   uint sample_index;  // likewise
   uint dimension;

@@ -62,11 +62,10 @@ Looseness looseness_of(const std::vector<std::uint32_t>& spirv) {
 }  // namespace
 
 TEST_CASE("No device may contract, reorder or approximate anything in the path tracer") {
-  const std::map<std::string, rhi::ShaderStage> stages = {{".comp", rhi::ShaderStage::compute},
-                                                          {".rgen", rhi::ShaderStage::ray_generation},
-                                                          {".rmiss", rhi::ShaderStage::miss},
-                                                          {".rchit", rhi::ShaderStage::closest_hit},
-                                                          {".rahit", rhi::ShaderStage::any_hit}};
+  const std::map<std::string, rhi::ShaderStage> stages = {
+      {".comp", rhi::ShaderStage::compute},  {".rgen", rhi::ShaderStage::ray_generation},
+      {".rmiss", rhi::ShaderStage::miss},    {".rchit", rhi::ShaderStage::closest_hit},
+      {".rahit", rhi::ShaderStage::any_hit}, {".rint", rhi::ShaderStage::intersection}};
   std::map<std::string, int> arithmetic;
   for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(shader_directory)) {
     const auto stage = stages.find(entry.path().extension().string());
@@ -81,7 +80,7 @@ TEST_CASE("No device may contract, reorder or approximate anything in the path t
     CHECK(looseness.functions.empty());
   }
   for (const char* name : {"path_trace.comp", "path_trace.rgen"}) CHECK(arithmetic[name] > 100);
-  CHECK(arithmetic["path_trace.rahit"] > 20);
+  for (const char* name : {"path_trace.rahit", "path_trace.rint"}) CHECK(arithmetic[name] > 20);
   CHECK(arithmetic.contains("path_trace.rchit"));
   CHECK(arithmetic.contains("path_trace.rmiss"));
 }
