@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pathtracer/description/description.hpp"
 #include "pathtracer/error.hpp"
 
 namespace tandem::pathtracer {
@@ -13,7 +14,8 @@ Scene load_scene(const std::filesystem::path& path, const ObjOptions& options) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
   if (extension == ".obj") return load_obj(path, options);
-  throw Error(fmt::format("cannot read '{}': the name of a scene ends in .obj", path.string()));
+  if (extension == ".json") return load_description(path, options);
+  throw Error(fmt::format("cannot read '{}': the name of a scene ends in .obj or .json", path.string()));
 }
 
 }  // namespace tandem::pathtracer

@@ -1,0 +1,78 @@
+#include "pathtracer/description/description.hpp"
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pathtracer/description/geometry.hpp"
+#include "pathtracer/description/lights.hpp"
+#include "pathtracer/description/materials.hpp"
+#include "pathtracer/description/textures.hpp"
+#include "pathtracer/description/value.hpp"
+#include "pathtracer/description/view.hpp"
+#include "pathtracer/error.hpp"
+#include "pathtracer/text_file.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+/// The library's own parser lets the last of several members of one name win.
+nlohmann::json parse(const std::filesystem::path& path) {
+  using Event = nlohmann::json::parse_event_t;
+  std::vector<std::set<std::string>> open;  // the members so far of each object that is open
+  const auto check = [&](int, Event event, const nlohmann::json& json) {
+    if (event == Event::object_start) open.emplace_back();
+    if (event == Event::object_end) open.pop_back();
+    if (event == Event::key && !open.back().insert(json.get<std::string>()).second)
+      throw Error(fmt::format("{}: an object has two members named {}", path.string(), json.get<std::string>()));
+    return true;
+  };
+  const std::string text = read_text(path);
+  try {
+    return nlohmann::json::parse(text, check);
+  } catch (const nlohmann::json::exception& error) {
+    // Without the library's own mark, "[json.exception...] ".
+    const std::string sentence = error.what();
+    const std::size_t mark = sentence.find("] ");
+    throw Error(fmt::format("{}: {}", path.string(), mark == std::string::npos ? sentence : sentence.substr(mark + 2)));
+  }
+}
+
+}  // namespace
+
+Scene load_description(const std::filesystem::path& path, const ObjOptions& options) {
+  using namespace description;
+  const nlohmann::json json = parse(path);
+  const std::filesystem::path folder = path.parent_path();
+  const Object root(Value(json, path.string(), ""),
+                    {"$schema", "title", "models", "spheres", "boxes", "quads", "materials", "textures", "media",
+                     "lights", "environment", "medium", "camera", "settings"});
+  for (const char* key : {"$schema", "title"})
+    if (const std::optional<Value> text = root.get(key)) text->text();
+
+  Scene scene;
+  scene.name = path.filename().string();
+  Textures textures(root.get("textures"), folder, scene);
+  const NamedIndices media = read_media(root.get("media"), scene);
+  const NamedIndices materials = read_materials(root.get("materials"), textures, media, scene);
+  // What the description says itself comes before what a model of it says.
+  if (const std::optional<Value> camera = root.get("camera")) scene.camera = read_camera(*camera);
+  if (const std::optional<Value> settings = root.get("settings")) scene.settings = read_settings(*settings);
+  if (const std::optional<Value> environment = root.get("environment"))
+    scene.environment = read_environment(*environment, textures);
+  if (const std::optional<Value> medium = root.get("medium")) scene.medium = media.find(*medium);
+  add_models(root.get("models"), folder, options, materials, scene);
+  add_spheres(root.get("spheres"), materials, scene);
+  add_boxes(root.get("boxes"), materials, scene);
+  add_quads(root.get("quads"), materials, scene);
+  add_lights(root.get("lights"), scene);
+  if (scene.triangles.empty() && scene.spheres.empty())
+    root.value().fail("must have something to see: models, spheres, boxes or quads");
+  if (scene.textures.empty()) scene.texture_coordinates.clear();
+  return scene;
+}
+
+}  // namespace tandem::pathtracer
