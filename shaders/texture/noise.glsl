@@ -18,9 +18,10 @@ precise uint noise_lattice(float whole) {
 /// One of the twelve directions from the centre of a cube to its edges, each with equal probability.
 vec3 noise_gradient(uvec3 lattice) {
   uint bits = pcg4d(uvec4(lattice, 0)).x;
-  float first = (bits & 1u) != 0 ? 1.0 : -1.0;
-  float second = (bits & 2u) != 0 ? 1.0 : -1.0;
-  uint axis = (bits >> 2) % 3u;
+  // From the upper bits: the lower ones of this hash are less random.
+  float first = (bits & 0x80000000u) != 0 ? 1.0 : -1.0;
+  float second = (bits & 0x40000000u) != 0 ? 1.0 : -1.0;
+  uint axis = (((bits >> 14) & 0xffffu) * 3) >> 16;
   if (axis == 0) return vec3(0.0, first, second);
   return axis == 1 ? vec3(first, 0.0, second) : vec3(first, second, 0.0);
 }
