@@ -40,7 +40,6 @@ Features features_of(const Scene& scene) {
   }
   if (!scene.spheres.empty()) features |= feature::spheres;
   if (!scene.lights.empty() || scene.environment) features |= feature::lights;
-  if (scene.environment && scene.environment->texture != no_texture) features |= feature::textures;
   const bool emits = std::ranges::any_of(scene.spheres, [&](const GpuSphere& sphere) {
     return scene.materials[sphere.material].emission != glm::vec3(0);
   });

@@ -9,7 +9,7 @@
 #include "random.glsl"
 #include "sampling/alias_table.glsl"
 #include "scene.glsl"
-#include "texture/texture.glsl"
+#include "texture/image.glsl"
 
 /// Columns and rows of the map; a constant is one of a single texel.
 uvec2 environment_size() {
@@ -17,34 +17,36 @@ uvec2 environment_size() {
   return uvec2(textures[render.environment_texture].width, textures[render.environment_texture].height);
 }
 
-/// Where the map shows a direction: x from its left edge, y from its upper edge, both in [0, 1].
+/// Where the map shows a direction: its texture coordinates, from the lower left corner, in [0, 1].
 precise vec2 environment_coordinates(vec3 direction) {
   float right = det_dot(direction, render.environment_right);
   float up = det_dot(direction, render.environment_up);
   float forward = det_dot(direction, render.environment_forward);
   float across = det_sqrt(right * right + forward * forward);
-  return vec2(0.5 + det_atan2(right, forward) * (0.5 * INV_PI), det_atan2(across, up) * INV_PI);
+  return vec2(0.5 + det_atan2(right, forward) * (0.5 * INV_PI), 1.0 - det_atan2(across, up) * INV_PI);
 }
 
 precise vec3 environment_radiance_at(vec2 coordinates) {
   if (render.environment_texture == NO_TEXTURE) return render.background;
   // Beyond the centres of the outer rows there is nothing to interpolate with: the poles have the colour of their row.
   float margin = det_div(0.5, float(environment_size().y));
-  float down = coordinates.y > margin ? coordinates.y : margin;
-  down = down < 1.0 - margin ? down : 1.0 - margin;
-  return render.background *
-         texture_color(render.environment_texture, vec2(coordinates.x, 1.0 - down), vec3(0.0));
+  float v = coordinates.y > margin ? coordinates.y : margin;
+  v = v < 1.0 - margin ? v : 1.0 - margin;
+  return render.background * textures[render.environment_texture].color_a *
+         image_at(render.environment_texture, vec2(coordinates.x, v)).xyz;
 }
 
 precise float environment_density_at(vec2 coordinates) {
   if (render.environment_light == NO_LIGHT) return 0.0;
   uvec2 size = environment_size();
-  precise vec2 place = coordinates * vec2(size);
+  // The texel that image_at takes without a filter, to the last bit: what it finds there has a density.
+  precise vec2 place = vec2(coordinates.x < 1.0 ? coordinates.x : 0.0, coordinates.y) * vec2(size);
   uint column = uint(place.x);
-  uint row = uint(place.y);
+  uint row_from_below = uint(place.y);
   column = column < size.x ? column : size.x - 1;
-  row = row < size.y ? row : size.y - 1;
-  return lights[render.environment_light].probability * environment_cells[row * size.x + column].density;
+  row_from_below = row_from_below < size.y ? row_from_below : size.y - 1;
+  uint cell = (size.y - 1 - row_from_below) * size.x + column;
+  return lights[render.environment_light].probability * environment_cells[cell].density;
 }
 
 /// Radiance that arrives from far away. `direction` is a unit vector to where it comes from.
