@@ -1,11 +1,13 @@
 // Emissive spheres as lights: from outside a uniform direction of the cone that the sphere fills (Wang 1992), from inside
-// a uniform point of its surface.
+// a uniform point of its surface. So too where rays may pass the near side of the sphere and meet the far one.
 
 #ifndef TANDEM_LIGHT_SPHERE
 #define TANDEM_LIGHT_SPHERE
 
 #include "geometry/frame.glsl"
-#include "geometry/offset_ray.glsl"
+#include "geometry/material_opacity.glsl"
+#include "geometry/sphere.glsl"
+#include "geometry/sphere_hit.glsl"
 #include "light/emission.glsl"
 #include "light/light_sample.glsl"
 #include "math.glsl"
@@ -13,7 +15,11 @@
 
 /// Whether a point sees the sphere as a cone. So close to it that rounding cannot tell which side the point is on, any
 /// point of the surface is a candidate. @param squared_distance from its centre
-bool is_cone(float squared_distance, float radius) {
+bool is_cone(uint sphere, float squared_distance) {
+  uint material = spheres[sphere].material;
+  if (FEATURE_TRANSPARENCY && (materials[material].opacity < 1.0 || materials[material].alpha_texture != NO_TEXTURE))
+    return false;
+  float radius = spheres[sphere].radius;
   precise float limit = 1.0001 * (radius * radius);
   return squared_distance > limit;
 }
@@ -24,20 +30,18 @@ precise float cone_height(float squared_distance, float radius) {
   return det_div(squared_sine, 1.0 + det_sqrt(1.0 - squared_sine));
 }
 
-precise float cone_density(uint index, float height) { return det_div(lights[index].probability * (0.5 * INV_PI), height); }
-
-vec3 sphere_light_centre(uint index, float time) {
-  uint sphere = lights[index].primitive - render.triangle_count;
-  precise vec3 centre = spheres[sphere].centre + spheres[sphere].motion * time;
-  return centre;
+/// Of a direction in it, times that of choosing the light. @param index into lights
+precise float cone_density(uint index, float height) {
+  return det_div(lights[index].probability * (0.5 * INV_PI), height);
 }
 
 /// light_density of a sphere. @param index into lights
 precise float sphere_light_density(uint index, vec3 position, vec3 direction, vec3 point, vec3 normal, float time) {
-  float radius = spheres[lights[index].primitive - render.triangle_count].radius;
-  vec3 to_centre = sphere_light_centre(index, time) - position;
+  uint sphere = lights[index].primitive - render.triangle_count;
+  vec3 to_centre = sphere_centre(sphere, time) - position;
   precise float squared_distance = det_dot(to_centre, to_centre);
-  if (is_cone(squared_distance, radius)) return cone_density(index, cone_height(squared_distance, radius));
+  if (is_cone(sphere, squared_distance))
+    return cone_density(index, cone_height(squared_distance, spheres[sphere].radius));
   return solid_angle_density(lights[index].area_density, position, direction, point, normal);
 }
 
@@ -46,10 +50,10 @@ precise LightSample sample_sphere_light(uint index, vec3 position, vec2 u, float
   LightSample light = dark_light_sample();
   uint sphere = lights[index].primitive - render.triangle_count;
   float radius = spheres[sphere].radius;
-  vec3 centre = sphere_light_centre(index, time);
+  vec3 centre = sphere_centre(sphere, time);
   precise vec3 to_centre = centre - position;
   precise float squared_distance = det_dot(to_centre, to_centre);
-  bool cone = is_cone(squared_distance, radius);
+  bool cone = is_cone(sphere, squared_distance);
   // Either is uniform over the part of a sphere of directions that lies within a height from its pole.
   float height = cone ? cone_height(squared_distance, radius) : 2.0;
   vec2 turn = det_sincos(2.0 * PI * u.x);
@@ -69,7 +73,7 @@ precise LightSample sample_sphere_light(uint index, vec3 position, vec2 u, float
     light.target_normal = det_normalize(uniform_direction * distance - to_centre, -uniform_direction);
   }
   light.target = centre + light.target_normal * radius;
-  light.target_offset = offset_distance(light.target, light.target_normal, abs(centre) + radius);
+  light.target_offset = sphere_offset(centre, radius, light.target_normal);
   if (!cone) {
     precise vec3 to_light = light.target - position;
     if (!(det_dot(to_light, to_light) > 1e-30)) return light;
@@ -79,7 +83,10 @@ precise LightSample sample_sphere_light(uint index, vec3 position, vec2 u, float
                        : solid_angle_density(lights[index].area_density, position, light.direction, light.target,
                                              light.target_normal);
   if (light.density == 0.0) return light;
-  light.radiance = emitted_radiance(spheres[sphere].material, vec2(0.0), light.target);
+  uint material = spheres[sphere].material;
+  vec2 uv = FEATURE_TEXTURES ? sphere_texture_coordinates(light.target_normal) : vec2(0.0);
+  light.radiance = emitted_radiance(material, uv, light.target);
+  if (FEATURE_TRANSPARENCY) light.radiance *= material_opacity(material, uv, light.target);
   return light;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <vector>
 
@@ -201,6 +202,43 @@ TANDEM_DEVICE_TEST("From inside, a sphere is sampled uniformly over its area") {
   CHECK(worst_density < 5e-6);
   // From everywhere inside an emissive sphere all directions have its radiance.
   check_mean(irradiances(samples, glm::normalize(glm::dvec3(1, -2, 0.5))), pi * 5);
+}
+
+TANDEM_DEVICE_TEST("Where rays may pass the near side of a sphere, both sides are sampled") {
+  Scene scene = sphere_scene({0, 3, 0}, 1, 2);
+  scene.materials[1].opacity = 0.75f;
+  const std::vector<LightSample> samples = light_samples(device, scene, glm::vec3(0), count, 0, 1);
+  check_two_routes(samples);
+  // A ray meets the near side three times in four, and the far one as often when it has passed the near one.
+  std::vector<LightSample> visible = samples;
+  for (LightSample& sample : visible)
+    if (glm::dot(sample.target_normal, sample.direction) > 0) sample.radiance *= 0.25f;
+  check_mean(irradiances(visible, {0, 1, 0}), pi * 2 / 9 * (0.75 + 0.25 * 0.75));
+}
+
+TANDEM_DEVICE_TEST("A textured emitter sends what its texture says") {
+  Scene scene = sphere_scene({0, 3, 0}, 1, 2);
+  add_triangle(scene, {-1, 2, 0}, {1, 2, 0}, {1, 2, 1}, 1);
+  // One half of all u, and of the triangle's, is red, the other green.
+  scene.texture_coordinates.resize(scene.positions.size());
+  scene.texture_coordinates[4] = {1, 0};
+  scene.texture_coordinates[5] = {1, 1};
+  TextureImage image{.name = "test", .format = TexelFormat::unorm8, .width = 2, .height = 1, .texels = {}};
+  for (const int value : {255, 0, 0, 255, 0, 255, 0, 255}) image.texels.push_back(std::byte(value));
+  scene.materials[1].emission_texture = add_texture(scene, image);
+  scene.textures.back().gpu.filter = TextureFilter::nearest;
+  std::size_t wrong = 0, triangles = 0;
+  for (const LightSample& sample : light_samples(device, scene, glm::vec3(0.25f), 10000, 0, 2)) {
+    const bool is_triangle = sample.primitive == 1;
+    triangles += is_triangle;
+    // A sphere's u begins at -x and goes by +z.
+    const double x = sample.target.x, z = sample.target.z;
+    if (std::abs(is_triangle ? x : z) < 1e-5) continue;
+    const bool is_red = is_triangle ? x < 0 : z > 0;
+    wrong += sample.radiance != (is_red ? glm::vec3(2, 0, 0) : glm::vec3(0, 2, 0));
+  }
+  CHECK(wrong == 0);
+  CHECK(triangles > 300);
 }
 
 TANDEM_DEVICE_TEST("Irradiance below a sphere is pi L (r / d)^2 cos") {
