@@ -1,4 +1,4 @@
-// What sampling a BSDF gives.
+// What evaluating and sampling a BSDF give.
 
 #ifndef TANDEM_BSDF_BSDF_SAMPLE
 #define TANDEM_BSDF_BSDF_SAMPLE
@@ -15,6 +15,12 @@ struct BsdfSample {
   float density;   // per solid angle; 0 for a specular lobe
   uint lobe;       // LOBE_*
   float eta;       // index of refraction where `direction` lies over that of the other side; 1 if it stays
+};
+
+/// A BSDF for two directions.
+struct BsdfValue {
+  vec3 value;     // per steradian, without the cosine
+  float density;  // of sampling the one, given the other
 };
 
 #endif

@@ -1,27 +1,11 @@
-// What a BSDF needs to know of the point that it scatters at: the members of Material with their textures applied.
+// The BSDF parameters of a point: the members of its Material with their textures applied.
 
 #ifndef TANDEM_BSDF_PARAMETERS
 #define TANDEM_BSDF_PARAMETERS
 
+#include "bsdf/bsdf_parameters.glsl"
 #include "scene.glsl"
 #include "texture/texture.glsl"
-
-struct BsdfParameters {
-  uint model;          // MATERIAL_*
-  vec3 base_color;
-  vec3 reflectance;
-  vec3 transmittance;
-  float ior;
-  bool outside;        // wo is on the side of the geometric normal, outside of a dielectric
-  // With FEATURE_MATERIALS:
-  vec3 eta;
-  vec3 absorption;
-  float roughness;
-  float metallic;
-  float exponent;
-  float transmission;
-  float specular;
-};
 
 /// The texture of a member of a material, counted from 0: base_color, reflectance, transmittance, roughness, metallic,
 /// exponent, transmission, specular.
