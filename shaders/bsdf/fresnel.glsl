@@ -39,7 +39,8 @@ precise float fresnel_conductor(float cosine, float eta, float absorption) {
   float t4 = twice_a_c * sine2;
   precise float sum = t3 + t4;
   float parallel = sum > 0.0 ? perpendicular * det_div(t3 - t4, sum) : 1.0;
-  return 0.5 * (perpendicular + parallel);
+  precise float reflectance = 0.5 * (perpendicular + parallel);
+  return reflectance > 0.0 ? reflectance : 0.0;  // where nothing is reflected, rounding may leave less
 }
 
 /// (1 - cosine)^5, with which Schlick (1994) goes from the reflectance at normal incidence to that at grazing angles.

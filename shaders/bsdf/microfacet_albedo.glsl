@@ -39,7 +39,8 @@ precise MicrofacetAlbedo microfacet_albedo(float cosine, float alpha) {
 /// 2 * integral of microfacet_albedo(cosine) * cosine.
 precise MicrofacetAlbedo mean_microfacet_albedo(float alpha) {
   float r = det_sqrt(alpha);
-  float loss = alpha * alpha * (5.81758 + r * (-18.7592 + r * (46.3832 + r * (-74.221 + r * (59.9338 + r * -18.5667)))));
+  float loss =
+      alpha * alpha * (5.81758 + r * (-18.7592 + r * (46.3832 + r * (-74.221 + r * (59.9338 + r * -18.5667)))));
   float grazing = 0.0462856 + r * (0.0654439 + r * (-0.51379 + r * (0.684746 + r * -0.278698)));
   return MicrofacetAlbedo(loss, grazing);
 }

@@ -1,7 +1,8 @@
 // Diffuse reflection by V-shaped grooves of Lambertian facets: the qualitative model of Oren and Nayar, Generalization
 // of Lambert's Reflectance Model, SIGGRAPH 1994. It leaves out light that is reflected between facets, and the rougher
 // the surface the darker it is. Where it would give back more than arrives (up to 1.5 % at grazing angles, for sigma
-// around 0.2) it is scaled down to what arrives. Directions are unit vectors in the shading frame and point away from the surface.
+// around 0.2) it is scaled down to what arrives. Directions are unit vectors in the shading frame and point away from
+// the surface.
 
 #ifndef TANDEM_BSDF_OREN_NAYAR
 #define TANDEM_BSDF_OREN_NAYAR

@@ -95,8 +95,7 @@ precise BsdfValue principled_value(PrincipledLobes lobes, float alpha, Facets fa
                                 uncoated_mean > 1e-6 ? uncoated_mean : 1e-6);
   vec3 reflectance = lobes.normal_reflectance + (lobes.grazing_reflectance - lobes.normal_reflectance) * schlick;
   return BsdfValue(
-      reflectance * (0.25 * facets.shape) + lobes.diffuse * base +
-          lobes.compensation * compensation,
+      reflectance * (0.25 * facets.shape) + lobes.diffuse * base + lobes.compensation * compensation,
       lobes.reflection_probability * reflection_density(facets) + lobes.diffuse_probability * (wi.z * INV_PI));
 }
 

@@ -17,7 +17,8 @@
 /// eta where wi is below the surface, with 1 where it is above.
 precise BsdfValue rough_dielectric_value(vec3 transmittance, float eta, Facets facets, vec3 wi) {
   if (!(facets.visible > 0.0)) return BsdfValue(vec3(0.0), 0.0);
-  precise float reflectance = fresnel_dielectric(facets.cosine_o, refracted_cosine(facets.cosine_o, eta), eta);
+  float transmitted_cosine = wi.z > 0.0 ? refracted_cosine(facets.cosine_o, eta) : -facets.cosine_i;
+  precise float reflectance = fresnel_dielectric(facets.cosine_o, transmitted_cosine, eta);
   if (wi.z > 0.0) return BsdfValue(vec3(reflectance * (0.25 * facets.shape)), reflectance * reflection_density(facets));
   float along = facets.cosine_o + eta * facets.cosine_i;
   float squeezed = det_div((1.0 - reflectance) * facets.cosine_o * abs(facets.cosine_i), along * along);

@@ -78,7 +78,7 @@ GpuMaterial diffuse_material(MaterialModel model, float roughness) {
 
 std::vector<BsdfMaterial> wide_materials() {
   using enum MaterialModel;
-  const glm::vec3 gold_eta(0.143f, 0.375f, 1.442f), gold_absorption(3.983f, 2.386f, 1.603f);
+  const glm::vec3 gold_eta(0.156f, 0.424f, 1.383f), gold_absorption(3.602f, 2.472f, 1.915f);
   return {
       {"Lambert", diffuse_material(MaterialModel::diffuse, 0)},
       {"Oren-Nayar, sigma 0", diffuse_material(oren_nayar, 0)},
