@@ -42,8 +42,9 @@ Looseness looseness_of(const std::vector<std::uint32_t>& spirv) {
                                spv::OpVectorTimesMatrix,
                                spv::OpMatrixTimesVector,
                                spv::OpMatrixTimesMatrix};
-  const std::set<int> exact_functions = {GLSLstd450FAbs, GLSLstd450Floor, GLSLstd450Sqrt, GLSLstd450FMin,
-                                         GLSLstd450FMax, GLSLstd450NMin,  GLSLstd450NMax, GLSLstd450UMin};
+  const std::set<int> exact_functions = {GLSLstd450FAbs, GLSLstd450Floor, GLSLstd450Sqrt,
+                                         GLSLstd450FMin, GLSLstd450FMax,  GLSLstd450NMin,
+                                         GLSLstd450NMax, GLSLstd450UMin,  GLSLstd450UMax};
   Looseness result;
   std::set<std::uint32_t> results, precise;
   for (std::size_t word = 5; word < spirv.size(); word += spirv[word] >> 16) {
