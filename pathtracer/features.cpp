@@ -36,7 +36,10 @@ Features features_of(const Scene& scene) {
     // Images as opacities need no more than transparency.
     if (material.alpha_texture != no_texture && scene.textures[material.alpha_texture].gpu.kind != TextureKind::image)
       features |= feature::textures;
-    if (!is_basic(material.model)) features |= feature::materials;
+    if (material.model == MaterialModel::boundary)
+      features |= feature::media;
+    else if (!is_basic(material.model))
+      features |= feature::materials;
   }
   if (!scene.spheres.empty()) features |= feature::spheres;
   if (!scene.lights.empty() || scene.environment) features |= feature::lights;

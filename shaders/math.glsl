@@ -82,6 +82,14 @@ float max_component(vec3 v) {
   return largest > v.z ? largest : v.z;
 }
 
+// Below this what a path carries can no longer change a sum, but might become subnormal.
+const float NEGLIGIBLE = 1e-30;
+
+/// v, its components 0 where they are negligible, or NaN.
+vec3 drop_negligible(vec3 v) {
+  return vec3(v.x >= NEGLIGIBLE ? v.x : 0.0, v.y >= NEGLIGIBLE ? v.y : 0.0, v.z >= NEGLIGIBLE ? v.z : 0.0);
+}
+
 /// v at length 1 within 2 ULP, `fallback` when v has no direction: zero (or so small that a device may flush it),
 /// infinite or NaN.
 precise vec3 det_normalize(vec3 v, vec3 fallback) {

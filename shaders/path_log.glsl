@@ -5,7 +5,7 @@
 #define TANDEM_PATH_LOG
 
 #define TANDEM_RAY_LOG
-#include "path.glsl"
+#include "integrator/path.glsl"
 #include "scene.glsl"
 
 struct PathId {

@@ -3,7 +3,7 @@
 #ifndef TANDEM_PATH_TRACE
 #define TANDEM_PATH_TRACE
 
-#include "path.glsl"
+#include "integrator/path.glsl"
 #include "scene.glsl"
 
 /// `position` is that of the invocation in the tile; beyond the tile or the picture there is nothing to do.

@@ -11,23 +11,27 @@ struct RandomKey {
   uint seed;
 };
 
-// The dimensions of a path: one for the camera, then two for each vertex. Each holds four numbers. Those of rays that
-// transparent triangles may let pass have a range of their own.
+// The dimensions of a path, four numbers each: one for the camera, then two for each vertex. Vertices are counted by the
+// segments before them, those that end where a medium begins included. What few paths need, and what decides about
+// transparent triangles, has ranges of its own.
 const uint DIMENSION_CAMERA = 0;          // the point on the film (x, y) and on the lens (z, w)
 const uint DIMENSION_TIME = 0x40000000u;  // when, while the shutter is open (x)
 
-/// Of the vertex at the end of path segment `depth` (0: the camera ray): the scattered direction (x, y, z) and roulette
+/// Of the vertex at the end of path segment `segment` (0: the camera ray): the scattered direction (x, y, z) and roulette
 /// (w).
-uint scattering_dimension(uint depth) { return 1 + 2 * depth; }
+uint scattering_dimension(uint segment) { return 1 + 2 * segment; }
 
 /// Of the same vertex: the choice of a light (x, y) and of a point on it (z, w).
-uint light_dimension(uint depth) { return 2 + 2 * depth; }
+uint light_dimension(uint segment) { return 2 + 2 * segment; }
 
-/// Of path segment `depth`: which transparent triangles it meets.
-uint segment_dimension(uint depth) { return 0x80000000u + 2 * depth; }
+/// Of path segment `segment`, in a medium: the colour for which its length is sampled (x), and the length (y).
+uint medium_dimension(uint segment) { return 0x20000000u + segment; }
+
+/// Of path segment `segment`: which transparent triangles it meets.
+uint segment_dimension(uint segment) { return 0x80000000u + 2 * segment; }
 
 /// Of the ray to a light from the vertex at its end: likewise.
-uint shadow_dimension(uint depth) { return 0x80000001u + 2 * depth; }
+uint shadow_dimension(uint segment) { return 0x80000001u + 2 * segment; }
 
 uvec4 pcg4d(uvec4 v) {
   v = v * 1664525u + 1013904223u;

@@ -205,11 +205,11 @@ struct RenderConstants {
   uint mis;                // MIS_*
   uint bsdf_sampling;      // BSDF_SAMPLING_*
   uint roulette;           // 1: Russian roulette, 0: none
-  uint max_diffuse_depth;  // scattering events of a path by lobes of each kind
+  uint max_diffuse_depth;  // scattering events of a path by lobes of each kind, before the one that meets a lamp
   uint max_glossy_depth;
   uint max_specular_depth;
-  float clamp_direct;      // largest channel of what one sample adds at its first vertex; 0: no bound
-  float clamp_indirect;    // at later ones
+  float clamp_direct;      // largest channel of what light adds that came along at most two segments; 0: no bound
+  float clamp_indirect;    // along more of them
   float occlusion_length;  // of rays of INTEGRATOR_AMBIENT_OCCLUSION
   uint environment_texture;  // equirectangular, into textures, or NO_TEXTURE: the background alone
   uint environment_light;    // into lights, or NO_LIGHT

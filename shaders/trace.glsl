@@ -22,22 +22,22 @@ const float RAY_LENGTH = 1e30;
 #include "trace/ray_log.glsl"
 #endif
 
-/// Index of the closest primitive along a ray, or NO_PRIMITIVE. The dimension belongs to this ray alone: it decides which
-/// transparent triangles the ray meets.
-uint trace_closest(vec3 origin, vec3 direction, RandomKey key, uint dimension) {
-  uint primitive = closest_primitive(origin, direction, RAY_LENGTH, key, dimension);
+/// Index of the closest primitive along a ray, or NO_PRIMITIVE. `t_max` in lengths of the direction. The dimension
+/// belongs to this ray alone: it decides which transparent triangles the ray meets.
+uint trace_closest(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
+  uint primitive = closest_primitive(origin, direction, t_max, key, dimension);
 #ifdef TANDEM_RAY_LOG
-  log_ray(TracedRay(origin, RAY_LENGTH, direction, RAY_CLOSEST, primitive, key.pixel, key.sample_index, dimension));
+  log_ray(TracedRay(origin, t_max, direction, RAY_CLOSEST, primitive, key.pixel, key.sample_index, dimension));
 #endif
   return primitive;
 }
 
-/// Whether anything lies between two points. The dimension as for trace_closest.
-bool trace_occluded(vec3 from, vec3 to, RandomKey key, uint dimension) {
-  precise vec3 direction = to - from;
-  bool occluded = is_occluded(from, direction, 1.0, key, dimension);
+/// Whether there is anything along a ray. The parameters as for trace_closest.
+bool trace_occluded(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
+  bool occluded = is_occluded(origin, direction, t_max, key, dimension);
 #ifdef TANDEM_RAY_LOG
-  log_ray(TracedRay(from, 1.0, direction, RAY_OCCLUSION, occluded ? 1u : 0u, key.pixel, key.sample_index, dimension));
+  log_ray(TracedRay(origin, t_max, direction, RAY_OCCLUSION, occluded ? 1u : 0u, key.pixel, key.sample_index,
+                    dimension));
 #endif
   return occluded;
 }

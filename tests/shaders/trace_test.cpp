@@ -77,9 +77,10 @@ void main() {
   vec3 local = cosine_hemisphere(queries[row].direction);
   vec3 direction = det_normalize(to_world(make_frame(from_normal), vec3(local.xy, local.z * queries[row].flatness)), from_normal);
   vec3 origin = offset_point(from, from_normal, from_offset, direction);
-  uint hit = trace_closest(origin, direction, RandomKey(0, 0, 0), 0);
-  bool occluded = trace_occluded(offset_point(from, from_normal, from_offset, from_normal),
-                                 offset_point(to, to_normal, to_offset, to_normal), RandomKey(0, 0, 0), 0);
+  uint hit = trace_closest(origin, direction, RAY_LENGTH, RandomKey(0, 0, 0), 0);
+  vec3 inside = offset_point(from, from_normal, from_offset, from_normal);
+  vec3 between = offset_point(to, to_normal, to_offset, to_normal) - inside;
+  bool occluded = trace_occluded(inside, between, 1.0, RandomKey(0, 0, 0), 0);
   answers[row] = (hit == queries[row].triangles.x ? 1u : 0u) | (hit == NO_PRIMITIVE ? 2u : 0u) | (occluded ? 4u : 0u);
 }
 )";
