@@ -322,3 +322,49 @@ TANDEM_DEVICE_TEST("BSDFs at known points: normalisation of the lobes, panes, an
   CHECK(std::abs(albedo[28].x - 0.04) < 1e-3);
   CHECK(std::abs(albedo[29].x - 0.07) < 1e-3);
 }
+
+TANDEM_DEVICE_TEST("A principled metal is the conductor, and a principled sheet passes light as it reflects it") {
+  pathtracer::GpuMaterial metal;
+  metal.model = pathtracer::MaterialModel::principled;
+  metal.base_color = glm::vec3(0.9f, 0.5f, 0.1f);
+  metal.metallic = 1;
+  metal.roughness = 0.5f;
+  metal.ior = 1.5f;
+  pathtracer::GpuMaterial conductor = metal;
+  conductor.model = pathtracer::MaterialModel::conductor;
+  conductor.reflectance = metal.base_color;
+  pathtracer::GpuMaterial passing = metal;
+  passing.metallic = 0;
+  passing.transmission = 1;
+  passing.specular = 0;
+  passing.base_color = glm::vec3(1);
+  pathtracer::GpuMaterial white = metal;
+  white.base_color = glm::vec3(1);
+  const std::vector<test::BsdfMaterial> materials = {
+      {"metal", metal}, {"conductor", conductor}, {"passing", passing}, {"white", white}};
+  test::RandomSource random(8);
+  std::vector<std::uint32_t> rows;
+  for (int i = 0; i < 500; ++i) {
+    append(rows, test::direction_at(random.uniform(0.05, 1), random.uniform(-3, 3)));
+    append(rows, test::direction_at(random.uniform(0.05, 1), random.uniform(-3, 3)));
+  }
+  const std::vector<std::uint32_t> outputs = test::run_bits(device,
+                                                            test::bsdf_kernel(materials, R"(
+    vec3 wo = vec3(input_float(0), input_float(1), input_float(2));
+    vec3 wi = vec3(input_float(3), input_float(4), input_float(5));
+    vec3 below = vec3(wi.x, wi.y, -wi.z);
+    output_float(0, bsdf_evaluate(material(0), wo, wi).y);
+    output_float(1, bsdf_evaluate(material(1), wo, wi).y);
+    output_float(2, bsdf_evaluate(material(2), wo, below).y);
+    output_float(3, bsdf_evaluate(material(3), wo, wi).y);
+    output_float(4, bsdf_evaluate(material(2), wo, wi).y);
+    output_float(5, bsdf_evaluate(material(3), wo, below).y);)",
+                                                                              6, 6),
+                                                            rows);
+  for (std::size_t i = 0; i < outputs.size(); i += 6) {
+    CHECK(float_of(outputs[i]) == doctest::Approx(float_of(outputs[i + 1])).epsilon(1e-5));
+    CHECK(float_of(outputs[i + 2]) == doctest::Approx(float_of(outputs[i + 3])).epsilon(1e-5));
+    CHECK(outputs[i + 4] == 0);
+    CHECK(outputs[i + 5] == 0);
+  }
+}
