@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "tests/shaders/bsdf_materials.hpp"
@@ -185,4 +187,23 @@ TANDEM_DEVICE_TEST("A BSDF sample's weight is value * cosine / density, and its 
   CHECK(lobes_seen == (diffuse_lobe | glossy_lobe | transmission_lobe));
   CHECK(worst_weight < 1e-6);  // a few roundings
   CHECK(worst_length < 5e-7);
+}
+
+TEST_CASE("BSDF samples are the same bits on all devices") {
+  std::vector<test::BsdfMaterial> materials = test::wide_materials();
+  for (const auto& list : {test::extreme_materials(), test::specular_materials()})
+    materials.insert(materials.end(), list.begin(), list.end());
+  const std::vector<double> cosines = {0.9, 0.3};
+  using Words = std::array<std::uint32_t, sizeof(Sample) / sizeof(std::uint32_t)>;
+  std::vector<Sample> first;
+  for (const std::string& name : test::device_names()) {
+    const std::vector<Sample> samples = draw(*test::device(name), materials, cosines);
+    if (first.empty()) first = samples;
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      different += std::bit_cast<Words>(samples[i]) != std::bit_cast<Words>(first[i]);
+    INFO(name, " and ", test::device_names().front(), " of ", samples.size());
+    CHECK(different == 0);
+    CHECK(test::take_warnings(name).empty());
+  }
 }
