@@ -17,8 +17,8 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
 #   tandem_NAME_kernels (alias Tandem::NAME_kernels), header "NAME/kernels.hpp":
 #     namespace tandem::NAME { std::span<const cpu::PrecompiledKernel> kernels(); }   all of them, for the CPU device
 #
-# Each of SPECIALIZATIONS is a set of constant=value for which kernels are made of every source, beside those with the
-# defaults: others have to be compiled when they are used.
+# Each of SPECIALIZATIONS is a set of constant=value for which kernels are made of every source, or with @REGEX behind it of
+# those whose names match, beside the kernels with the defaults: others have to be compiled when they are used.
 #
 # SPIR-V keeps its debug information, so that a debugger shows the GLSL. A shader is rebuilt when it or anything that it
 # includes has changed.
@@ -40,6 +40,7 @@ function(tandem_add_shaders name)
   set(number 0)
   foreach(values IN LISTS shaders_SPECIALIZATIONS)
     math(EXPR number "${number} + 1")
+    string(REGEX REPLACE "@.*" "" values "${values}")
     string(REGEX REPLACE "([0-9]+)=([0-9]+)" "{\\1, \\2}" initializers "${values}")
     string(APPEND specialization_values "  static constexpr rhi::SpecializationValue specialization_${number}[] = {${initializers}};\n")
   endforeach()
@@ -76,6 +77,12 @@ function(tandem_add_shaders name)
     set(number 0)
     foreach(values IN LISTS shaders_SPECIALIZATIONS)
       math(EXPR number "${number} + 1")
+      if(values MATCHES "(.*)@(.*)")
+        set(values "${CMAKE_MATCH_1}")
+        if(NOT source MATCHES "${CMAKE_MATCH_2}")
+          continue()
+        endif()
+      endif()
       string(REGEX REPLACE "([0-9]+=[0-9]+),?" "--specialize;\\1;" options "${values}")
       set(variant "${folder}/${shader}_kernel_${number}.cpp")
       add_custom_command(
