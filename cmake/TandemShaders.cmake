@@ -145,6 +145,7 @@ std::span<const cpu::PrecompiledKernel> kernels() {
   tandem_library(${name}_kernels "${folder}/kernels.cpp" ${kernel_sources})
   target_link_libraries(tandem_${name}_kernels PUBLIC tandem_${name})
   target_link_libraries(tandem_${name}_kernels PRIVATE glm::glm)
-  # Debug information changes no code, and lets a debugger step through the GLSL; its variables have values in a debug build.
-  set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS "${TANDEM_KERNEL_OPTIONS};-g;$<$<CONFIG:Debug>:-O0>")
+  # Debug information changes no code, and lets a debugger step through the GLSL. Values of its variables are in a debug build only: for
+  # a large shader they take the compiler as long as everything else.
+  set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS "${TANDEM_KERNEL_OPTIONS};$<IF:$<CONFIG:Debug>,-g;-O0,-g1>")
 endfunction()
