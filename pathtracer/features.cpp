@@ -17,13 +17,11 @@ bool is_basic(MaterialModel model) {
   return model == MaterialModel::diffuse || model == MaterialModel::mirror || model == MaterialModel::dielectric;
 }
 
-bool has_texture(const GpuMaterial& material) {
-  const std::uint32_t textures[] = {
-      material.base_color_texture,    material.emission_texture, material.reflectance_texture,
-      material.roughness_texture,     material.metallic_texture, material.transmission_texture,
-      material.transmittance_texture, material.specular_texture, material.exponent_texture,
-      material.normal_texture,        material.bump_texture};
-  return std::ranges::any_of(textures, [](std::uint32_t texture) { return texture != no_texture; });
+/// Opacities alone, where they are images, need no more than transparency.
+bool needs_textures(const Scene& scene, GpuMaterial material) {
+  const std::uint32_t alpha = material.alpha_texture;
+  if (alpha != no_texture && scene.textures[alpha].gpu.kind == TextureKind::image) material.alpha_texture = no_texture;
+  return has_texture(material);
 }
 
 }  // namespace
@@ -32,10 +30,7 @@ Features features_of(const Scene& scene) {
   Features features = 0;
   for (const GpuMaterial& material : scene.materials) {
     if (is_transparent(material)) features |= feature::transparency;
-    if (has_texture(material)) features |= feature::textures;
-    // Images as opacities need no more than transparency.
-    if (material.alpha_texture != no_texture && scene.textures[material.alpha_texture].gpu.kind != TextureKind::image)
-      features |= feature::textures;
+    if (needs_textures(scene, material)) features |= feature::textures;
     if (material.model == MaterialModel::boundary)
       features |= feature::media;
     else if (!is_basic(material.model))

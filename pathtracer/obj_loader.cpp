@@ -15,8 +15,8 @@
 #include <glm/geometric.hpp>
 
 #include "pathtracer/mtl_loader.hpp"
+#include "pathtracer/mtl_texture.hpp"
 #include "pathtracer/polygon.hpp"
-#include "pathtracer/texture_image.hpp"
 #include "pathtracer/wavefront_text.hpp"
 
 namespace tandem::pathtracer {
@@ -51,7 +51,8 @@ struct Reading {
   std::uint32_t current_material = no_material;
   std::optional<std::uint32_t> default_material;
   std::set<std::string> libraries;
-  std::map<std::filesystem::path, std::uint32_t> textures;  ///< index of each file, or no_texture
+  TextureFiles textures;
+  std::set<std::filesystem::path> missing_textures;
   std::set<std::string> unknown_materials;
   std::size_t unusable_texture_coordinates = 0;
   std::set<std::string> ignored;  ///< keywords of elements that are no surfaces this loader knows
@@ -68,18 +69,19 @@ std::uint32_t default_material(Reading& reading) {
   return *reading.default_material;
 }
 
-std::uint32_t load_texture(Reading& reading, const std::filesystem::path& path) {
-  const auto [entry, is_new] = reading.textures.try_emplace(path, no_texture);
-  if (!is_new) return entry->second;
-  std::error_code status_error;
-  if (!std::filesystem::exists(path, status_error)) {
+/// Gives a material its textures. `folder` is that of the MTL file.
+void load_textures(Reading& reading, NamedMaterial& entry, const std::filesystem::path& folder) {
+  for (const MaterialMap& map : entry.maps) {
+    if (const auto file = find_texture(folder, map.file)) {
+      entry.material.*map.member = texture_of(reading.scene, reading.textures, *file, map);
+      continue;
+    }
+    const std::filesystem::path path = folder / map.file;
     const std::string sentence = fmt::format("the texture '{}' does not exist", path.string());
     if (!reading.options.allow_missing_mtl) throw reading.text->error(sentence);
-    reading.scene.warnings.push_back(reading.text->error(sentence).what());
-    return no_texture;
+    if (reading.missing_textures.insert(path).second)
+      reading.scene.warnings.push_back(reading.text->error(sentence).what());
   }
-  entry->second = add_texture(reading.scene, load_alpha_texture(path));
-  return entry->second;
 }
 
 void load_library(Reading& reading, const std::string& name) {
@@ -94,7 +96,7 @@ void load_library(Reading& reading, const std::string& name) {
   }
   for (NamedMaterial& entry : load_mtl(path, reading.scene.warnings)) {
     if (reading.material_names.contains(entry.name)) continue;
-    if (!entry.alpha_map.empty()) entry.material.alpha_texture = load_texture(reading, entry.alpha_map);
+    load_textures(reading, entry, path.parent_path());
     reading.material_names.emplace(entry.name, add_material(reading, entry.name, entry.material));
   }
 }
@@ -191,7 +193,7 @@ std::uint32_t resolve(const Reading& reading, int index, std::size_t count, std:
 }
 
 bool has_texture(const Reading& reading, std::uint32_t material) {
-  return material != no_material && reading.scene.materials[material].alpha_texture != no_texture;
+  return material != no_material && pathtracer::has_texture(reading.scene.materials[material]);
 }
 
 /// What no texture needs may be wrong.

@@ -1,5 +1,6 @@
 #include "pathtracer/scene.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -41,6 +42,15 @@ std::uint32_t add_texture(Scene& scene, TextureImage image) {
   scene.textures.push_back({.gpu = {}, .image = static_cast<std::uint32_t>(scene.images.size())});
   scene.images.push_back(std::move(image));
   return static_cast<std::uint32_t>(scene.textures.size() - 1);
+}
+
+bool has_texture(const GpuMaterial& material) {
+  const std::uint32_t textures[] = {
+      material.base_color_texture,    material.emission_texture, material.reflectance_texture,
+      material.roughness_texture,     material.metallic_texture, material.transmission_texture,
+      material.transmittance_texture, material.specular_texture, material.exponent_texture,
+      material.normal_texture,        material.bump_texture,     material.alpha_texture};
+  return std::ranges::any_of(textures, [](std::uint32_t texture) { return texture != no_texture; });
 }
 
 bool is_transparent(const GpuMaterial& material) {

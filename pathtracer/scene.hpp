@@ -88,6 +88,9 @@ double triangle_area(const Scene& scene, const GpuTriangle& triangle);
 bool is_transparent(const GpuMaterial& material);
 bool is_transparent(const Scene& scene, const GpuTriangle& triangle);
 
+/// Whether any of its members has a texture, its opacity included.
+bool has_texture(const GpuMaterial& material);
+
 /// A material that reflects `albedo` and does nothing else.
 GpuMaterial diffuse_material(glm::vec3 albedo, glm::vec3 emission = glm::vec3(0));
 

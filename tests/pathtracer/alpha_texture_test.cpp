@@ -93,6 +93,28 @@ TEST_CASE("A missing texture has no effect where that is allowed") {
   CHECK(scene.texture_coordinates.empty());
 }
 
+TEST_CASE("A texture is found beside the MTL file or in the folder of textures, by its last name where need be") {
+  const ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "textures");
+  std::filesystem::create_directories(folder.path() / "models");
+  folder.write("textures/mask.pgm", grey_image);
+  const auto load = [&](const std::string& directory) {
+    folder.write(directory + "test.mtl", "newmtl leaf\nmap_Kd C:\\maps\\mask.pgm\nbump -bm 0.1 mask.pgm\n");
+    return load_obj(folder.write(directory + "test.obj", "mtllib test.mtl\n" + quad + "usemtl leaf\nf 1/1 2/2 3/3\n"));
+  };
+  for (const char* directory : {"", "models/"}) {
+    const Scene scene = load(directory);
+    CHECK(scene.warnings.empty());
+    CHECK(scene.textures.size() == 2);
+    REQUIRE(scene.images.size() == 2);
+    const GpuMaterial& material = scene.materials.at(0);
+    CHECK(scene.images[scene.textures.at(material.base_color_texture).image].format == TexelFormat::srgb8);
+    CHECK(scene.images[scene.textures.at(material.bump_texture).image].format == TexelFormat::unorm8);
+    CHECK(scene.texture_coordinates.size() == scene.positions.size());
+    CHECK_FALSE(is_transparent(material));
+  }
+}
+
 TEST_CASE("Textured vertices have texture coordinates, and a file that two materials name is read once") {
   const Scene scene = load_leaf(quad + "usemtl leaf\nf 1/1 2/2 3/3 4/4\nusemtl other\nf 1/3 2/3 3/3\n");
   CHECK(scene.warnings.empty());

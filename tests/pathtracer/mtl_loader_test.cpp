@@ -99,24 +99,104 @@ TEST_CASE("d is opacity, Tr its complement, and d counts where both are given") 
   CHECK(load("newmtl m\nd 0.01\n").warnings.empty());
 }
 
-TEST_CASE("map_d names a file beside the MTL file, by its whole name, behind its options") {
+TEST_CASE("Each map is a texture of what it is named after, in a model that looks at it") {
   const Loaded loaded = load(
-      "newmtl a\nmap_d leaf mask.png\nnewmtl b\nmap_d -clamp on -s 2 2 -o 0.5 -bm 1 2.png\nmap_d -mm 0 1 last.png\n");
-  CHECK(loaded.materials.at(0).alpha_map.filename() == "leaf mask.png");
-  CHECK(loaded.materials.at(1).alpha_map.filename() == "last.png");
+      "newmtl a\nillum 2\nKs 0.25\nKd 0.5\nmap_Kd a.png\nmap_Ks b.png\nmap_Ke c.png\nmap_Ns d.png\nmap_d e.png\n"
+      "bump -bm 0.5 f.png\nnewmtl b\nmap_Kd a.png\nmap_Ks b.png\nmap_Ns d.png\nnorm g.png\n"
+      "newmtl c\nPr 0.5\nmap_Pm h.png\n");
+  CHECK(loaded.warnings.empty());
+  REQUIRE(loaded.materials.size() == 3);
+  const auto file = [&](std::size_t material, std::uint32_t GpuMaterial::*member) -> std::string {
+    for (const MaterialMap& map : loaded.materials[material].maps)
+      if (map.member == member) return map.file.string();
+    return "";
+  };
+  const NamedMaterial& a = loaded.materials[0];
+  CHECK(a.maps.size() == 6);
+  CHECK(file(0, &GpuMaterial::base_color_texture) == "a.png");
+  CHECK(file(0, &GpuMaterial::reflectance_texture) == "b.png");
+  CHECK(file(0, &GpuMaterial::emission_texture) == "c.png");
+  CHECK(file(0, &GpuMaterial::exponent_texture) == "d.png");
+  CHECK(file(0, &GpuMaterial::alpha_texture) == "e.png");
+  CHECK(file(0, &GpuMaterial::bump_texture) == "f.png");
+  for (const MaterialMap& map : a.maps) {
+    const bool is_color = map.file == "a.png" || map.file == "b.png" || map.file == "c.png";
+    CHECK(map.kind == (is_color ? MapKind::color : map.file == "e.png" ? MapKind::opacity : MapKind::data));
+  }
+  CHECK(a.material.normal_scale == 0.5f);
+  CHECK(a.material.base_color == glm::vec3(0.5f));
+  // What is not given is 1 under a map.
+  CHECK(a.material.emission == glm::vec3(1));
+  CHECK(loaded.materials[1].material.base_color == glm::vec3(1));
+  CHECK(loaded.materials[1].material.model == MaterialModel::diffuse);
+  CHECK(loaded.materials[1].maps.size() == 2);
+  CHECK(file(1, &GpuMaterial::normal_texture) == "g.png");
+  CHECK(loaded.materials[2].material.model == MaterialModel::principled);
+  CHECK(loaded.materials[2].material.roughness == 0.5f);
+  CHECK(loaded.materials[2].material.metallic == 1);
+  CHECK(file(2, &GpuMaterial::metallic_texture) == "h.png");
+}
+
+TEST_CASE("A map names a file by its whole name, behind its options") {
+  const Loaded loaded = load(
+      "newmtl a\nmap_d leaf mask.png\nnewmtl b\n"
+      "map_d -clamp on -s 2 3 1 -o 0.5 -mm 0 0.25 -imfchan g -cc on -blendu off -mm 1 2 some\\last.png\n");
+  const MaterialMap& plain = loaded.materials.at(0).maps.at(0);
+  CHECK(plain.file == "leaf mask.png");
+  CHECK(plain.texture.filter == TextureFilter::nearest);
+  CHECK(plain.texture.channel == 0);
+  CHECK(plain.texture.address == 0);
+  const MaterialMap& last = loaded.materials.at(1).maps.at(0);
+  CHECK(last.file == "some/last.png");
+  CHECK(last.kind == MapKind::data);
+  CHECK(last.texture.channel == 1);
+  CHECK(last.texture.address == 0x101);
+  CHECK(last.texture.u_row == glm::vec3(2, 0, 0.5f));
+  CHECK(last.texture.v_row == glm::vec3(0, 3, 0));
+  CHECK(last.texture.color_a == glm::vec3(2));
+  CHECK(last.texture.alpha_a == 2);
   REQUIRE(loaded.warnings.size() == 1);
-  CHECK(contains(loaded.warnings[0], "-bm, -clamp, -mm, -o and 1 more"));
-  CHECK(contains(error_of("newmtl a\nmap_d\n"), "test.mtl:2: "));
-  CHECK(contains(error_of("newmtl a\nmap_d -clamp on\n"), "test.mtl:2: "));
+  CHECK(contains(loaded.warnings[0], "-blendu, -cc, -mm"));
+  for (const char* wrong : {"map_d", "map_Kd -clamp on", "map_Kd -s x.png", "map_Kd -mm 1 x.png", "bump -bm nan x.png"})
+    CHECK(contains(error_of("newmtl a\n" + std::string(wrong) + "\n"), "test.mtl:2: "));
+}
+
+TEST_CASE("Kd and a lobe of Ks reflect no more than arrives") {
+  const Loaded loaded = load(
+      "newmtl floor\nillum 2\nKd 0.725 0.71 0.68\nKs 0.3\nNs 80\nnewmtl plain\nillum 2\nKd 0.7\nKs 0.3\n"
+      "newmtl dull\nillum 2\nKd 0.7\nKs 0\nNs 80\nnewmtl simple\nillum 1\nKd 0.7\nKs 0.9\n");
+  const GpuMaterial& floor = loaded.materials.at(0).material;
+  CHECK(floor.model == MaterialModel::blinn_phong);
+  CHECK(floor.exponent == 80);
+  CHECK(floor.base_color.x + floor.reflectance.x == doctest::Approx(1));
+  CHECK(floor.base_color.x / floor.reflectance.x == doctest::Approx(0.725 / 0.3));
+  CHECK(loaded.materials.at(1).material.base_color == glm::vec3(0.7f));
+  CHECK(loaded.materials.at(1).material.exponent == 10);
+  CHECK(loaded.materials.at(2).material.model == MaterialModel::diffuse);
+  CHECK(loaded.materials.at(3).material.model == MaterialModel::diffuse);
+  REQUIRE(loaded.warnings.size() == 1);
+  CHECK(contains(loaded.warnings[0], "material floor"));
+}
+
+TEST_CASE("Glass that does not refract but dissolves is a veil, and glass of some roughness is rough") {
+  for (const char* illum : {"4", "9"}) {
+    const GpuMaterial veil =
+        load("newmtl m\nKd 0.9\nNi 0\nd 0.5\nillum " + std::string(illum) + "\n").materials.at(0).material;
+    CHECK(veil.model == MaterialModel::diffuse);
+    CHECK(veil.opacity == 0.5f);
+  }
+  const GpuMaterial frosted = load("newmtl m\nNi 1.5\nillum 7\nPr 0.3\n").materials.at(0).material;
+  CHECK(frosted.model == MaterialModel::rough_dielectric);
+  CHECK(frosted.roughness == 0.3f);
 }
 
 TEST_CASE("Textures, gains and repeated names are one warning each, whatever their number") {
-  const Loaded loaded = load(
-      "newmtl a\nmap_Kd a.png\nmap_Bump b.png\nKd 2 0 0\nnewmtl b\nmap_Kd c.png\nbump d.png\nnewmtl a\nKd 0.1 0 0\n");
+  const Loaded loaded =
+      load("newmtl a\nmap_Ka a.png\nrefl b.png\nKd 2 0 0\nnewmtl b\nmap_Ka c.png\ndisp d.png\nnewmtl a\nKd 0.1 0 0\n");
   CHECK(loaded.materials.size() == 2);
   CHECK(loaded.materials.at(0).material.base_color == glm::vec3(2, 0, 0));
   REQUIRE(loaded.warnings.size() == 3);
-  CHECK(contains(loaded.warnings[0], "bump, map_Bump, map_Kd"));
+  CHECK(contains(loaded.warnings[0], "disp, map_Ka, refl"));
   CHECK(contains(loaded.warnings[1], "material a"));
   CHECK(contains(loaded.warnings[2], "material a"));
 }
