@@ -63,8 +63,43 @@ std::optional<glm::dvec3> point_in_plane(const TracedRay& ray, const Corners& t)
   return origin + glm::dot(t.a - origin, normal) / cosine * direction;
 }
 
+/// Of the coordinates that intersecting a sphere computes with.
+double largest_magnitude(const pathtracer::GpuSphere& sphere) {
+  const glm::dvec3 begin(sphere.centre), end = begin + glm::dvec3(sphere.motion);
+  return std::max({largest_magnitude(begin), largest_magnitude(end), double{sphere.radius}});
+}
+
+/// Where the ray first meets a sphere; nothing for one that passes by, or a sphere that moves: when the ray looks, only
+/// the devices know.
+std::optional<glm::dvec3> point_on_sphere(const TracedRay& ray, const pathtracer::GpuSphere& sphere) {
+  if (sphere.motion != glm::vec3(0)) return std::nullopt;
+  const glm::dvec3 direction(ray.direction), from_centre = glm::dvec3(ray.origin) - glm::dvec3(sphere.centre);
+  const double a = glm::dot(direction, direction), b = glm::dot(from_centre, direction);
+  const glm::dvec3 closest = from_centre - b / a * direction;
+  const double discriminant = double{sphere.radius} * sphere.radius - glm::dot(closest, closest);
+  if (!(discriminant >= 0)) return std::nullopt;
+  const double half = std::sqrt(discriminant / a);
+  const double t = -b / a > half ? -b / a - half : -b / a + half;
+  if (!(t > 0)) return std::nullopt;
+  return glm::dvec3(ray.origin) + t * direction;
+}
+
+/// The sphere that an answer names, or none.
+const pathtracer::GpuSphere* sphere_of(const pathtracer::Scene& scene, std::uint32_t answer) {
+  const std::size_t index = std::size_t{answer} - scene.triangles.size();
+  return answer >= scene.triangles.size() && index < scene.spheres.size() ? &scene.spheres[index] : nullptr;
+}
+
+/// Where the ray meets the primitive that an answer names, if that can be told.
+std::optional<glm::dvec3> point_on(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32_t answer) {
+  if (answer < scene.triangles.size()) return point_in_plane(ray, corners_of(scene, answer));
+  const pathtracer::GpuSphere* sphere = sphere_of(scene, answer);
+  return sphere != nullptr ? point_on_sphere(ray, *sphere) : std::nullopt;
+}
+
 double largest_magnitude(const pathtracer::Scene& scene) {
   double magnitude = 0;
+  for (const pathtracer::GpuSphere& sphere : scene.spheres) magnitude = std::max(magnitude, largest_magnitude(sphere));
   for (const glm::vec3& position : scene.positions)
     magnitude = std::max(magnitude, largest_magnitude(glm::dvec3(position)));
   return magnitude;
@@ -72,11 +107,13 @@ double largest_magnitude(const pathtracer::Scene& scene) {
 
 /// How far rounding may put a hit from where it is, in world space. @param scene_magnitude largest_magnitude(scene)
 double tolerated_distance(const TracedRay& ray, const pathtracer::Scene& scene, double scene_magnitude,
-                          std::uint32_t triangle) {
+                          std::uint32_t primitive) {
   double magnitude = scene_magnitude;
-  if (triangle < scene.triangles.size()) {
-    const Corners t = corners_of(scene, triangle);
+  if (primitive < scene.triangles.size()) {
+    const Corners t = corners_of(scene, primitive);
     magnitude = std::max({largest_magnitude(t.a), largest_magnitude(t.b), largest_magnitude(t.c)});
+  } else if (const pathtracer::GpuSphere* sphere = sphere_of(scene, primitive)) {
+    magnitude = largest_magnitude(*sphere);
   }
   magnitude = std::max(magnitude, largest_magnitude(glm::dvec3(ray.origin)));
   return tolerated_ulp * double{std::numeric_limits<float>::epsilon()} * magnitude;
@@ -136,15 +173,15 @@ std::pair<glm::dvec3, glm::dvec3> closest_points(const TracedRay& ray, const glm
 
 /// Whether the ray passes within `distance` of a triangle, in front of what it exactly hits, or not that far behind:
 /// an intersection test may then take the triangle to be hit. A triangle that is seen edge-on is hit by no ray
-/// exactly.
+/// exactly. Of a sphere the neighbours of the ray say as much.
 bool passes_by(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32_t triangle, std::uint32_t exact,
                double distance) {
   if (triangle >= scene.triangles.size()) return false;
   const Corners t = corners_of(scene, triangle);
   const glm::dvec3 origin(ray.origin);
   double reach = std::numeric_limits<double>::infinity();  // to the exact hit
-  if (exact < scene.triangles.size()) {
-    const std::optional<glm::dvec3> hit = point_in_plane(ray, corners_of(scene, exact));
+  if (exact != pathtracer::no_triangle) {
+    const std::optional<glm::dvec3> hit = point_on(ray, scene, exact);
     if (!hit) return false;
     if (glm::distance(closest_point(t, *hit), *hit) <= distance) return true;
     reach = glm::distance(*hit, origin);
@@ -200,14 +237,12 @@ std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtr
   std::vector<double> distances;
   for (std::size_t i = 0; i < disputes.size(); ++i) {
     const TracedRay& ray = disputes[i].ray;
-    // The answer to a shadow ray names no triangle.
-    const std::uint32_t triangle = ray.kind == RayKind::closest ? exact[i] : pathtracer::no_triangle;
-    distances.push_back(tolerated_distance(ray, scene, scene_magnitude, triangle));
+    // The answer to a shadow ray names no primitive.
+    const std::uint32_t primitive = ray.kind == RayKind::closest ? exact[i] : pathtracer::no_triangle;
+    distances.push_back(tolerated_distance(ray, scene, scene_magnitude, primitive));
     double reach = ray.kind == RayKind::occlusion ? double{ray.t_max} : 0.0;
-    if (triangle < scene.triangles.size()) {
-      if (const auto hit = point_in_plane(ray, corners_of(scene, triangle)))
-        reach = glm::distance(*hit, glm::dvec3(ray.origin)) / glm::length(glm::dvec3(ray.direction));
-    }
+    if (const auto hit = point_on(ray, scene, primitive))
+      reach = glm::distance(*hit, glm::dvec3(ray.origin)) / glm::length(glm::dvec3(ray.direction));
     first_moved.push_back(moved.size());
     const std::vector<TracedRay> around = neighbours(ray, distances.back(), reach);
     moved.insert(moved.end(), around.begin(), around.end());

@@ -59,8 +59,8 @@ using ExactTracer = std::function<std::vector<std::uint32_t>(std::span<const pat
 
 /// Judges each dispute. An answer is right when it is the exact one. It is right within rounding when some ray that
 /// differs from this one by no more than 32 units in the last place of the largest coordinate involved has it exactly,
-/// or when the ray passes its triangle that closely, no farther away than the exact hit: backends transform, clip and
-/// intersect in single precision, and 32 units is what the path tracer's own offset allows them
+/// or when the ray passes its triangle (not its sphere) that closely, no farther away than the exact hit: backends
+/// transform, clip and intersect in single precision, and 32 units is what the path tracer's own offset allows them
 /// (shaders/geometry/offset_ray.glsl).
 std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
                                  const ExactTracer& trace);

@@ -29,6 +29,7 @@ Examination examine(pathtracer::Renderer& a, pathtracer::Renderer& b, pathtracer
                     const pathtracer::Image& image_a, const pathtracer::Image& image_b, std::uint32_t samples,
                     const pathtracer::Scene& scene, std::size_t limit) {
   Examination result;
+  result.triangle_count = static_cast<std::uint32_t>(scene.triangles.size());
   std::vector<pathtracer::PathId> paths;
   for (const glm::uvec2& pixel : differing_pixels(image_a, image_b, limit, result.differing_pixels)) {
     ++result.examined_pixels;

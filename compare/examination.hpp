@@ -20,6 +20,7 @@ struct JudgedDispute {
 };
 
 struct Examination {
+  std::uint32_t triangle_count = 0;      ///< answers from this on name spheres
   std::uint64_t differing_pixels = 0;    ///< that are not bit-equal
   std::uint64_t examined_pixels = 0;     ///< of them; fewer when there are more than the limit
   std::uint64_t parted_by_dispute = 0;   ///< paths whose first difference is a ray with two answers

@@ -113,20 +113,29 @@ Camera inside_room(const SceneProbe& probe, bool hollow) {
   return camera;
 }
 
-/// From the front, a little from the right and from above, so near that all vertices just fit into the picture.
+/// From the front, a little from the right and from above, so near that all vertices and spheres just fit into the
+/// picture.
 Camera three_quarter(const Scene& scene, const Bounds& box, float aspect) {
   const glm::vec3 forward = -glm::normalize(glm::vec3(0.5f, 0.4f, 1));
   const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0, 1, 0)));
   const glm::vec3 up = glm::cross(right, forward);
   const float slope = std::tan(glm::radians(outside_fov) / 2);
   float distance = 0;
+  // How far off a ball has to be to touch no side of the field of view; a vertex is one without radius.
+  const auto fit = [&](const glm::vec3& position, float radius) {
+    const glm::vec3 p = position - box.centre();
+    const float depth = glm::dot(p, forward);
+    const auto fit_between = [&](float across, float tangent) {
+      const float room = margin * (std::abs(across) + radius * std::sqrt(1 + tangent * tangent));
+      distance = std::max(distance, room / tangent - depth);
+    };
+    fit_between(glm::dot(p, right), slope * aspect);
+    fit_between(glm::dot(p, up), slope);
+  };
   for (const GpuTriangle& triangle : scene.triangles)
-    for (const std::uint32_t vertex : triangle.vertices) {
-      const glm::vec3 p = scene.positions[vertex] - box.centre();
-      const float depth = glm::dot(p, forward);
-      distance = std::max(distance, margin * std::abs(glm::dot(p, right)) / (slope * aspect) - depth);
-      distance = std::max(distance, margin * std::abs(glm::dot(p, up)) / slope - depth);
-    }
+    for (const std::uint32_t vertex : triangle.vertices) fit(scene.positions[vertex], 0);
+  for (const GpuSphere& sphere : scene.spheres)
+    for (const glm::vec3& centre : {sphere.centre, sphere.centre + sphere.motion}) fit(centre, sphere.radius);
   if (!(distance > 0)) distance = 1;  // all vertices are in one point
   return {.position = box.centre() - forward * distance,
           .target = box.centre(),

@@ -25,7 +25,8 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-/// Sets the members of a camera. Throws Error for one that looks nowhere or a number out of range.
+/// Sets the members of a camera, and `shutter` to whether it moves. Throws Error for one that looks nowhere or a number
+/// out of range.
 void set_camera(RenderConstants& constants, const Camera& camera, std::uint32_t width, std::uint32_t height);
 
 /// A view of the whole scene, y upwards: through the open side of a room that has one, centred; from inside a closed

@@ -14,17 +14,19 @@ using pathtracer::RayKind;
 /// Disputes that the table lists; the JSON has all.
 constexpr std::size_t most_listed = 10;
 
-std::string answer_text(RayKind kind, std::uint32_t answer) {
+std::string answer_text(RayKind kind, std::uint32_t answer, std::uint32_t triangle_count) {
   if (kind == RayKind::occlusion) return answer != 0 ? "occluded" : "free";
-  return answer == pathtracer::no_triangle ? "nothing" : fmt::format("triangle {}", answer);
+  if (answer == pathtracer::no_triangle) return "nothing";
+  return answer < triangle_count ? fmt::format("triangle {}", answer)
+                                 : fmt::format("sphere {}", answer - triangle_count);
 }
 
-std::string sentence(const compare::JudgedDispute& judged) {
+std::string sentence(const compare::JudgedDispute& judged, std::uint32_t triangle_count) {
   const compare::Dispute& dispute = judged.dispute;
-  const RayKind kind = dispute.ray.kind;
+  const auto text = [&](std::uint32_t answer) { return answer_text(dispute.ray.kind, answer, triangle_count); };
   return fmt::format("pixel {},{} sample {} ray {}: a says {}, b says {}, exact is {}: {}", dispute.path.pixel.x,
-                     dispute.path.pixel.y, dispute.path.sample, dispute.ray_index, answer_text(kind, dispute.answer_a),
-                     answer_text(kind, dispute.answer_b), answer_text(kind, judged.judgement.exact_answer),
+                     dispute.path.pixel.y, dispute.path.sample, dispute.ray_index, text(dispute.answer_a),
+                     text(dispute.answer_b), text(judged.judgement.exact_answer),
                      compare::name(judged.judgement.ruling));
 }
 
@@ -54,7 +56,7 @@ std::string table(const compare::Examination& examination, const std::string& ar
   std::vector<compare::JudgedDispute> listed = examination.disputes;
   std::ranges::stable_partition(listed, [](const auto& each) { return each.judgement.ruling != Ruling::tie; });
   listed.resize(std::min(listed.size(), most_listed));
-  for (const compare::JudgedDispute& judged : listed) line("", sentence(judged));
+  for (const compare::JudgedDispute& judged : listed) line("", sentence(judged, examination.triangle_count));
   if (listed.size() < examination.disputes.size())
     line("", fmt::format("and {} more", examination.disputes.size() - listed.size()));
   return text;
@@ -62,6 +64,7 @@ std::string table(const compare::Examination& examination, const std::string& ar
 
 nlohmann::ordered_json to_json(const compare::Examination& examination, const std::string& arbiter) {
   nlohmann::ordered_json json = {{"device", arbiter},
+                                 {"triangles", examination.triangle_count},  // answers from this number on are spheres
                                  {"differing_pixels", examination.differing_pixels},
                                  {"examined_pixels", examination.examined_pixels},
                                  {"parted_by_dispute", examination.parted_by_dispute},

@@ -5,8 +5,7 @@
 #ifndef TANDEM_INTEGRATOR_PATH
 #define TANDEM_INTEGRATOR_PATH
 
-#include "camera/pinhole.glsl"
-#include "camera/shutter.glsl"
+#include "camera/camera.glsl"
 #include "integrator/direct_light.glsl"
 #include "integrator/mis.glsl"
 #include "integrator/options.glsl"
@@ -55,12 +54,10 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
   key.pixel = pixel.x + (pixel.y << 16);
   key.sample_index = sample_index;
   key.seed = render.seed;
-  uvec4 camera_bits = sampler_bits(key, DIMENSION_CAMERA);
-  vec2 film = vec2(unit_interval(camera_bits.x), unit_interval(camera_bits.y));
   precise float time = shutter_time(key);
-  precise vec3 origin = render.camera_position;
-  precise vec3 direction = pinhole_direction(pixel, film, render.resolution, render.camera_right, render.camera_up,
-                                             render.camera_forward);
+  precise CameraRay camera = camera_ray(pixel, key, time);
+  precise vec3 origin = camera.origin;
+  precise vec3 direction = camera.direction;
   bool occlusion = option_integrator() == INTEGRATOR_AMBIENT_OCCLUSION;
   uint max_depth = occlusion ? 2 : render.max_depth;
   float ray_length = RAY_LENGTH;

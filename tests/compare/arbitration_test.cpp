@@ -30,7 +30,7 @@ pathtracer::Scene plates(const std::vector<float>& heights) {
   return scene;
 }
 
-/// Every triangle, in double precision: what the exact device stands for here.
+/// Every triangle and sphere, in double precision: what the exact device stands for here.
 std::vector<std::uint32_t> trace_exactly(const pathtracer::Scene& scene, std::span<const TracedRay> rays) {
   std::vector<std::uint32_t> answers;
   for (const TracedRay& ray : rays) {
@@ -48,6 +48,19 @@ std::vector<std::uint32_t> trace_exactly(const pathtracer::Scene& scene, std::sp
       if (!inside) continue;
       nearest = t;
       triangle = i;
+    }
+    for (std::uint32_t i = 0; i < scene.spheres.size(); ++i) {
+      const glm::dvec3 from_centre = glm::dvec3(ray.origin) - glm::dvec3(scene.spheres[i].centre);
+      const glm::dvec3 direction(ray.direction);
+      const double a = glm::dot(direction, direction), b = glm::dot(from_centre, direction);
+      const double radius = scene.spheres[i].radius;
+      const double discriminant = b * b - a * (glm::dot(from_centre, from_centre) - radius * radius);
+      if (discriminant < 0) continue;
+      for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a})
+        if (t > 0 && t < nearest) {
+          nearest = t;
+          triangle = static_cast<std::uint32_t>(scene.triangles.size()) + i;
+        }
     }
     answers.push_back(ray.kind == RayKind::closest ? triangle : (triangle != pathtracer::no_triangle ? 1u : 0u));
   }
@@ -73,6 +86,27 @@ TEST_CASE("well inside a triangle the device that sees it is right") {
   CHECK(judgement.exact_answer == 0);
   CHECK(judge(scene, upwards(0.5f, 0.5f), none, 0).ruling == Ruling::b_right);
   CHECK(judge(scene, upwards(0.5f, 0.5f), none, 1).ruling == Ruling::both_wrong);
+}
+
+TEST_CASE("a sphere is right where the ray meets it, and a tie where it is all but touched") {
+  pathtracer::Scene scene = plates({1, 3});
+  scene.spheres = {{.centre = {0.5f, 0.5f, 2}, .radius = 0.25f}, {.centre = {1.5f, 1.5f, 3}, .radius = 0.25f}};
+  // Above the first plate; the second sphere lies beside both.
+  TracedRay ray = upwards(0.5f, 0.5f);
+  ray.origin.z = 1.25f;
+  CHECK(judge(scene, ray, 2, 1).ruling == Ruling::a_right);
+  CHECK(judge(scene, ray, 1, 2).ruling == Ruling::b_right);
+  CHECK(judge(scene, ray, 3, none).ruling == Ruling::both_wrong);
+  CHECK(judge(scene, ray, 2, 1).exact_answer == 2);
+  CHECK(judge(scene, upwards(0.5f, 0.5f), 2, 0).ruling == Ruling::b_right);
+  CHECK(judge(scene, upwards(1.5f, 1.5f), 3, none).ruling == Ruling::a_right);
+  // A rim that the ray all but touches, from inside and from outside.
+  CHECK(judge(scene, upwards(1.75f - 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(1.75f + 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(1.75f + 1e-3f, 1.5f), none, 3).ruling == Ruling::a_right);
+  pathtracer::Scene only;
+  only.spheres = {{.centre = {0, 0, 5}, .radius = 1}};
+  CHECK(judge(only, upwards(0, 0), 0, none).ruling == Ruling::a_right);
 }
 
 TEST_CASE("at the border of a triangle, what lies behind it is as right") {

@@ -130,6 +130,86 @@ TEST_CASE("A camera that looks nowhere is an error") {
   }
 }
 
+TEST_CASE("An orthographic camera is as high as it says, an equirectangular one has unit vectors") {
+  RenderConstants constants{};
+  Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 5}, .height = 3};
+  set_camera(constants, camera, 200, 100);
+  CHECK(constants.camera_kind == CameraKind::orthographic);
+  CHECK(constants.camera_right == glm::vec3(3, 0, 0));
+  CHECK(constants.camera_up == glm::vec3(0, 1.5f, 0));
+  camera.kind = CameraKind::equirectangular;
+  set_camera(constants, camera, 200, 100);
+  CHECK(constants.camera_kind == CameraKind::equirectangular);
+  CHECK(constants.camera_right == glm::vec3(1, 0, 0));
+  CHECK(constants.camera_up == glm::vec3(0, 1, 0));
+}
+
+TEST_CASE("A lens is focused on the target unless told otherwise, and the shutter is open while the camera moves") {
+  RenderConstants constants{};
+  Camera camera{.position = {0, 0, 5}, .target = {0, 0, 1}, .lens_radius = 0.5f};
+  set_camera(constants, camera, 1, 1);
+  CHECK(constants.lens_radius == 0.5f);
+  CHECK(constants.focus_distance == 4);
+  CHECK(constants.shutter == 0);
+  camera.focus_distance = 2.5f;
+  camera.motion = {0, 1, 0};
+  set_camera(constants, camera, 1, 1);
+  CHECK(constants.focus_distance == 2.5f);
+  CHECK(constants.camera_motion == glm::vec3(0, 1, 0));
+  CHECK(constants.shutter == 1);
+  camera.motion = glm::vec3(0);
+  set_camera(constants, camera, 1, 1);
+  CHECK(constants.shutter == 0);
+}
+
+TEST_CASE("A number of a camera that is out of range is named") {
+  RenderConstants constants{};
+  const auto message = [&](const Camera& camera) -> std::string {
+    try {
+      set_camera(constants, camera, 1, 1);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN(), infinite = std::numeric_limits<float>::infinity();
+  for (const float value : {-1.0f, nan, infinite}) {
+    CHECK(message({.lens_radius = value}).find("lens radius") != std::string::npos);
+    CHECK(message({.focus_distance = value}).find("focus distance") != std::string::npos);
+    CHECK(message({.kind = CameraKind::orthographic, .height = value}).find("height") != std::string::npos);
+  }
+  CHECK(message({.kind = CameraKind::orthographic, .height = 0}).find("height") != std::string::npos);
+  CHECK(message({.motion = {0, nan, 0}}).find("motion") != std::string::npos);
+  CHECK(message({.kind = CameraKind::orthographic, .lens_radius = 1}).find("perspective") != std::string::npos);
+  CHECK(message({.kind = CameraKind::equirectangular, .vertical_fov = 0}).empty());
+}
+
+TEST_CASE("The automatic camera fits spheres into the picture, wherever they move") {
+  Scene scene;
+  scene.materials = {diffuse_material(glm::vec3(0.5f))};
+  scene.spheres = {{.centre = {1, 2, 3}, .radius = 2}, {.centre = {9, 2, 3}, .radius = 0.5f, .motion = {0, 4, 0}}};
+  for (const float aspect : {0.5f, 1.0f, 2.0f}) {
+    RenderConstants constants{};
+    set_camera(constants, automatic_camera(scene, aspect), static_cast<std::uint32_t>(100 * aspect), 100);
+    const glm::dvec3 forward(constants.camera_forward);
+    double extent = 0;
+    for (const GpuSphere& sphere : scene.spheres)
+      for (const glm::vec3& centre : {sphere.centre, sphere.centre + sphere.motion}) {
+        const glm::dvec3 p = glm::dvec3(centre) - glm::dvec3(constants.camera_position);
+        CHECK(glm::dot(p, forward) > double{sphere.radius});
+        for (const glm::dvec3& axis : {glm::dvec3(constants.camera_right), glm::dvec3(constants.camera_up)}) {
+          // Of the sphere's side that is nearest to the plane through the camera and this side of the picture; 1 is on
+          // it.
+          const double tangent = glm::length(axis);
+          const double side = std::abs(glm::dot(p, axis)) / tangent + sphere.radius * std::sqrt(1 + tangent * tangent);
+          extent = std::max(extent, side / (glm::dot(p, forward) * tangent));
+        }
+      }
+    CHECK(extent < 1);
+    CHECK(extent > 0.95);  // 1 / margin
+  }
+}
+
 TEST_CASE("The automatic camera looks into a Cornell box through its open side") {
   for (const char* name : {"cornell_box.obj", "cornell_spheres.obj"}) {
     const Scene scene = load_scene(source_directory / "scenes" / name);
