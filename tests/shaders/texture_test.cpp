@@ -202,6 +202,32 @@ TANDEM_DEVICE_TEST("Images in every format, address mode and filter are what dou
   }
 }
 
+TEST_CASE("All devices read textures to the last bit") {
+  test::RandomSource random(45);
+  Scene scene = scene_with_triangle();
+  for (const TexelFormat format : formats) add_texture(scene, random_image(format, 13, 9, random).image);
+  Texture noise;
+  noise.gpu.kind = TextureKind::noise;
+  noise.gpu.scale = 1.75f;
+  scene.textures.push_back(noise);
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; i < 50000; ++i) {
+    Place place{.texture = i % 7, .uv = {}};
+    for (float* value : {&place.uv.x, &place.uv.y, &place.position.x, &place.position.y, &place.position.z})
+      *value = static_cast<float>(random.uniform(-9, 9));
+    places.push_back(place);
+  }
+  std::vector<std::vector<float>> outputs;
+  for (const std::string& name : test::device_names()) {
+    outputs.push_back(read_textures(*test::device(name), scene, places));
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < outputs.front().size(); ++i)
+      different += std::bit_cast<std::uint32_t>(outputs.back()[i]) != std::bit_cast<std::uint32_t>(outputs.front()[i]);
+    CHECK(different == 0);
+    for (const std::string& warning : test::take_warnings(name)) FAIL_CHECK(warning);
+  }
+}
+
 TANDEM_DEVICE_TEST("Every half float and every integer is decoded to the float that it means") {
   Scene scene = scene_with_triangle();
   std::vector<float> expected;
