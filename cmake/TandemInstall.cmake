@@ -44,7 +44,7 @@ endforeach()
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${TANDEM_INSTALL_DATA}"
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.rgen" PATTERN "*.rmiss" PATTERN "*.rchit" PATTERN "*.rahit")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/scenes" DESTINATION "${TANDEM_INSTALL_DATA}"
-        FILES_MATCHING PATTERN "*.obj" PATTERN "*.mtl" PATTERN "*.png")
+        FILES_MATCHING PATTERN "*.obj" PATTERN "*.mtl" PATTERN "*.png" PATTERN "*.glb")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 configure_package_config_file(
