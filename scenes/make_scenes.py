@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes cornell_box.obj, cornell_spheres.obj and foliage.obj (with their .mtl and .png) beside this script.
+"""Writes the meshes, images and large descriptions of the scenes beside this script; the small descriptions (.json) are
+written by hand.
 
 Cornell box: room, light and blocks are the measured data of the Cornell Program of Computer Graphics,
 https://www.graphics.cornell.edu/online/box/data.html (1998), in millimetres. The reflectances and the emission are the
@@ -15,6 +16,9 @@ import pathlib
 import random
 import struct
 import zlib
+
+from generators import house, knot, sky, weekend
+from generators.mesh import number, unit
 
 SOURCE = [
     "# The Cornell box, from the measured data at https://www.graphics.cornell.edu/online/box/data.html",
@@ -75,20 +79,21 @@ SPHERES = [("mirror_sphere", "mirror", (388, 100.5, 370)), ("glass_sphere", "gla
 SUBDIVISIONS = 4  # 20 * 4**4 triangles
 
 
-def room_lines(mtl):
+def room_lines(mtl, material_by_object=False):
     lines = SOURCE + [f"mtllib {mtl}"]
     lines += [f"v {x:g} {y:g} {z:g}" for x, y, z in ROOM_VERTICES]
     for name, material, faces in ROOM:
+        material = name if material_by_object else material
         lines += [f"o {name}", f"usemtl {material}"]
         lines += ["f " + " ".join(map(str, face)) for face in faces]
     return lines
 
 
-def block_lines():
+def block_lines(material_by_object=False):
     lines = []
     for name, height, corners in BLOCKS:
         assert signed_area(corners) < 0, "the top must look up"
-        lines += [f"o {name}", "usemtl white"]
+        lines += [f"o {name}", f"usemtl {name if material_by_object else 'white'}"]
         lines += [f"v {x:g} {height:g} {z:g}" for x, z in corners]
         lines += [f"v {x:g} 0 {z:g}" for x, z in corners]
         lines.append("f -8 -7 -6 -5")
@@ -126,16 +131,6 @@ def icosphere(subdivisions):
             split += [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         triangles = split
     return points, triangles
-
-
-def unit(vector):
-    length = math.sqrt(sum(x * x for x in vector))
-    return tuple(x / length for x in vector)
-
-
-def number(value, decimals):
-    text = f"{value:.{decimals}f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
 
 
 def sphere_lines():
@@ -225,13 +220,31 @@ def fence_texels(side):
             for row in range(side)]
 
 
+def object_materials(names_and_materials):
+    """The materials of the room under the names of the objects that have them."""
+    library = dict(part.split("\n", 1) for part in ROOM_MATERIALS.split("newmtl ")[1:])
+    lines = [ROOM_MATERIALS.split("\n", 1)[0]]
+    for name, material in names_and_materials:
+        lines += [f"newmtl {name}", library[material].strip(), ""]
+    return "\n".join(lines)
+
+
+def rgb_png(rows):
+    data = b"".join(b"\0" + b"".join(bytes(texel) for texel in row) for row in rows)
+    return png_file(len(rows[0]), len(rows), 2, data)
+
+
 def png(rows, with_color):
     """An 8-bit image: the texels as grey, or as the alpha of a white one."""
+    data = b"".join(b"\0" + b"".join(bytes([255, t]) if with_color else bytes([t]) for t in row) for row in rows)
+    return png_file(len(rows[0]), len(rows), 4 if with_color else 0, data)
+
+
+def png_file(width, height, color_type, data):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 4 if with_color else 0, 0, 0, 0)
-    data = b"".join(b"\0" + b"".join(bytes([255, t]) if with_color else bytes([t]) for t in row) for row in rows)
+    header = struct.pack(">IIBBBBB", width, height, 8, color_type, 0, 0, 0)
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(data, 9)) + chunk(b"IEND", b"")
 
 
@@ -245,6 +258,21 @@ def main():
     (folder / "foliage.obj").write_text("\n".join(foliage_lines()) + "\n")
     (folder / "leaf.png").write_bytes(png(leaf_texels(64), with_color=True))
     (folder / "fence.png").write_bytes(png(fence_texels(16), with_color=False))
+
+    room = [(name, material) for name, material, _ in ROOM]
+    (folder / "cornell_room.mtl").write_text(object_materials(room))
+    (folder / "cornell_room.obj").write_text("\n".join(room_lines("cornell_room.mtl", True)) + "\n")
+    blocks = [(name, "white") for name, _, _ in BLOCKS]
+    (folder / "cornell_blocks.mtl").write_text(object_materials(blocks))
+    block_text = SOURCE + ["mtllib cornell_blocks.mtl"] + block_lines(True)
+    (folder / "cornell_blocks.obj").write_text("\n".join(block_text) + "\n")
+    (folder / "knot.mtl").write_text(knot.MATERIAL)
+    (folder / "knot.obj").write_text("\n".join(knot.lines()) + "\n")
+    (folder / "house.mtl").write_text(house.MATERIALS)
+    (folder / "house.obj").write_text("\n".join(house.lines()) + "\n")
+    (folder / "tiles.png").write_bytes(rgb_png(house.tile_texels(64)))
+    (folder / "sky.exr").write_bytes(sky.exr())
+    (folder / "in_one_weekend.json").write_text(weekend.text())
 
 
 if __name__ == "__main__":

@@ -26,14 +26,15 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "tandem " TANDEM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit code: 0 success, or the images agree; 1 the images differ (tandem diff) or a device fails\n"
-      "(tandem conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
+      "Exit code: 0 success, or the images agree; 1 the images differ (tandem diff, tandem gallery) or a device\n"
+      "fails (tandem conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
       "'tandem COMMAND --help' explains a command.");
   Action action;
   add_devices_command(app, action);
   add_render_command(app, action);
   add_diff_command(app, action);
   add_generate_command(app, action);
+  add_gallery_command(app, action);
   add_bench_command(app, action);
   add_conformance_command(app, action);
   const char* const hint = "'tandem --help' lists the commands";

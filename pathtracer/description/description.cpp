@@ -1,10 +1,7 @@
 #include "pathtracer/description/description.hpp"
 
-#include <set>
 #include <string>
-#include <vector>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "pathtracer/description/geometry.hpp"
@@ -13,39 +10,12 @@
 #include "pathtracer/description/textures.hpp"
 #include "pathtracer/description/value.hpp"
 #include "pathtracer/description/view.hpp"
-#include "pathtracer/error.hpp"
-#include "pathtracer/text_file.hpp"
 
 namespace tandem::pathtracer {
-namespace {
-
-/// The library's own parser lets the last of several members of one name win.
-nlohmann::json parse(const std::filesystem::path& path) {
-  using Event = nlohmann::json::parse_event_t;
-  std::vector<std::set<std::string>> open;  // the members so far of each object that is open
-  const auto check = [&](int, Event event, const nlohmann::json& json) {
-    if (event == Event::object_start) open.emplace_back();
-    if (event == Event::object_end) open.pop_back();
-    if (event == Event::key && !open.back().insert(json.get<std::string>()).second)
-      throw Error(fmt::format("{}: an object has two members named {}", path.string(), json.get<std::string>()));
-    return true;
-  };
-  const std::string text = read_text(path);
-  try {
-    return nlohmann::json::parse(text, check);
-  } catch (const nlohmann::json::exception& error) {
-    // Without the library's own mark, "[json.exception...] ".
-    const std::string sentence = error.what();
-    const std::size_t mark = sentence.find("] ");
-    throw Error(fmt::format("{}: {}", path.string(), mark == std::string::npos ? sentence : sentence.substr(mark + 2)));
-  }
-}
-
-}  // namespace
 
 Scene load_description(const std::filesystem::path& path, const ObjOptions& options) {
   using namespace description;
-  const nlohmann::json json = parse(path);
+  const nlohmann::json json = parse_json(path);
   const std::filesystem::path folder = path.parent_path();
   const Object root(Value(json, path.string(), ""),
                     {"$schema", "title", "models", "spheres", "boxes", "quads", "materials", "textures", "media",

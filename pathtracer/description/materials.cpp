@@ -1,5 +1,7 @@
 #include "pathtracer/description/materials.hpp"
 
+#include "pathtracer/conductors.hpp"
+
 namespace tandem::pathtracer::description {
 namespace {
 
@@ -37,7 +39,7 @@ std::vector<std::string> own_keys_of(MaterialModel model) {
     case MaterialModel::blinn_phong:
       return {"base_color", "reflectance", "exponent"};
     case MaterialModel::conductor:
-      return {"eta", "absorption", "reflectance", "roughness"};
+      return {"metal", "eta", "absorption", "reflectance", "roughness"};
     case MaterialModel::rough_dielectric:
       return {"roughness", "ior", "transmittance", "medium"};
     case MaterialModel::thin:
@@ -95,15 +97,26 @@ class Reader {
   Textures* textures_;
 };
 
-/// A conductor is given by its index of refraction, or by its reflectance.
+/// A conductor is given by its metal, its index of refraction, or its reflectance.
 void read_conductor(const Object& object, GpuMaterial& material) {
+  const std::optional<Value> metal = object.get("metal");
   const std::optional<Value> eta = object.get("eta");
   const std::optional<Value> absorption = object.get("absorption");
   if (eta.has_value() != absorption.has_value()) object.value().fail("must have both eta and absorption, or neither");
-  if (!eta) return;
-  if (object.get("reflectance")) object.value().fail("must have eta and absorption or a reflectance, not both");
-  material.eta = eta->color(refraction);
-  material.absorption = absorption->color(absorption_index);
+  if (int{metal.has_value()} + int{eta.has_value()} + int{object.get("reflectance").has_value()} > 1)
+    object.value().fail("must have one of: metal, eta with absorption, reflectance");
+  if (metal) {
+    std::vector<Named<const Conductor*>> names;
+    // Their names are literals, so they end with a 0.
+    for (const Conductor& conductor : conductors()) names.push_back({&conductor, conductor.name.data()});
+    const Conductor* const conductor = metal->choice<const Conductor*>(names);
+    material.eta = conductor->eta;
+    material.absorption = conductor->absorption;
+  }
+  if (eta) {
+    material.eta = eta->color(refraction);
+    material.absorption = absorption->color(absorption_index);
+  }
 }
 
 GpuMaterial read_material(const Value& value, Textures& textures, const NamedIndices& media) {

@@ -2,12 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "pathtracer/text_file.hpp"
+
 namespace tandem::pathtracer::description {
+
+// The library's own parser lets the last of several members of one name win.
+nlohmann::json parse_json(const std::filesystem::path& path) {
+  using Event = nlohmann::json::parse_event_t;
+  std::vector<std::set<std::string>> open;  // the members so far of each object that is open
+  const auto check = [&](int, Event event, const nlohmann::json& json) {
+    if (event == Event::object_start) open.emplace_back();
+    if (event == Event::object_end) open.pop_back();
+    if (event == Event::key && !open.back().insert(json.get<std::string>()).second)
+      throw Error(fmt::format("{}: an object has two members named {}", path.string(), json.get<std::string>()));
+    return true;
+  };
+  const std::string text = read_text(path);
+  try {
+    return nlohmann::json::parse(text, check);
+  } catch (const nlohmann::json::exception& error) {
+    // Without the library's own mark, "[json.exception...] ".
+    const std::string sentence = error.what();
+    const std::size_t mark = sentence.find("] ");
+    throw Error(fmt::format("{}: {}", path.string(), mark == std::string::npos ? sentence : sentence.substr(mark + 2)));
+  }
+}
 
 std::string Range::sentence() const {
   if (above_minimum && minimum == 0 && maximum >= largest_radiance) return "must be a positive number";

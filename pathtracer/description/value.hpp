@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <span>
@@ -23,6 +24,9 @@ namespace tandem::pathtracer::description {
 inline constexpr double largest_length = 1e12;
 /// Radiances and factors are at most this, so that no product of a few of them overflows.
 inline constexpr double largest_radiance = 1e9;
+
+/// Reads a JSON file. Throws Error, naming the file, also for objects with two members of one name.
+nlohmann::json parse_json(const std::filesystem::path& path);
 
 /// What a number must be.
 struct Range {

@@ -221,3 +221,33 @@ TEST_CASE("The schema and the loader agree on which members are required") {
   CHECK(accepted > 100);
   CHECK(refused > 40);
 }
+
+TEST_CASE("The schema and the loader accept the scenes that ship, without a warning") {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source_directory / "scenes")) {
+    if (entry.path().extension() != ".json" || entry.path().stem() == "gallery") continue;
+    CAPTURE(entry.path().string());
+    CHECK(schema().accepts(read_json(entry.path())));
+    const pathtracer::Scene scene = pathtracer::load_description(entry.path());
+    CHECK(scene.camera.has_value());
+    for (const std::string& warning : scene.warnings) FAIL_CHECK(warning);
+    ++count;
+  }
+  CHECK(count >= 19);
+}
+
+TEST_CASE("Descriptions of the thesis's own files load") {
+  if (!std::filesystem::is_directory(source_directory.parent_path() / "shared" / "scenes" / "thesis")) {
+    MESSAGE("the thesis's files are not there, so their descriptions are not tested");
+    return;
+  }
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source_directory / "scenes" / "thesis")) {
+    CAPTURE(entry.path().string());
+    CHECK(schema().accepts(read_json(entry.path())));
+    // The images of the medieval building are not among the files.
+    CHECK_FALSE(pathtracer::load_description(entry.path(), {.allow_missing_mtl = true}).triangles.empty());
+    ++count;
+  }
+  CHECK(count == 14);
+}
