@@ -87,7 +87,8 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     if (FEATURE_MEDIA && medium != NO_MEDIUM && !occlusion) {
       precise float surface_distance = RAY_LENGTH;
       if (primitive != NO_PRIMITIVE) surface_distance = det_length(vertex.surface.position - origin);
-      precise MediumSample reached = sample_medium(medium, surface_distance, sampler_bits(key, medium_dimension(segment)).xy);
+      uvec2 medium_bits = sampler_bits(key, medium_dimension(segment)).xy;
+      precise MediumSample reached = sample_medium(medium, throughput, surface_distance, medium_bits);
       throughput = drop_negligible(throughput * reached.weight);
       if (max_component(throughput) == 0.0) break;
       if (reached.scattered) {

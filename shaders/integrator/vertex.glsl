@@ -9,6 +9,7 @@
 #include "geometry/surface.glsl"
 #include "integrator/hemisphere.glsl"
 #include "integrator/medium.glsl"
+#include "integrator/phase_function.glsl"
 
 struct Vertex {
   Surface surface;   // in a medium: the position, no offset, and the direction of travel as both normals

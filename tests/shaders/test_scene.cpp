@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "pathtracer/features.hpp"
 #include "tests/support/device_test.hpp"
 
 namespace tandem::test {
@@ -50,6 +51,17 @@ void TestScene::add_sphere(const glm::dvec3& centre, double radius, int subdivis
         if (x + y + 1 < subdivisions) add(b, corner(x + 1, y + 1), c);
       }
   }
+}
+
+void TestScene::add_box(const glm::vec3& minimum, const glm::vec3& maximum, std::uint32_t material) {
+  const glm::vec3 size = maximum - minimum;
+  const glm::vec3 x(size.x, 0, 0), y(0, size.y, 0), z(0, 0, size.z);
+  add_quad(minimum, y, x, material);
+  add_quad(minimum + z, x, y, material);
+  add_quad(minimum, x, z, material);
+  add_quad(minimum + y, z, x, material);
+  add_quad(minimum, z, y, material);
+  add_quad(minimum + x, y, z, material);
 }
 
 void TestScene::add_lights() {
@@ -98,8 +110,14 @@ DeviceScene upload(rhi::Device& device, const TestScene& scene) {
   result.lights =
       buffer_of(device, scene.lights.empty() ? std::vector<pathtracer::GpuLight>(1) : scene.lights, "lights");
   std::vector<std::uint32_t> primitive_lights(scene.triangles.size(), pathtracer::no_light);
-  for (std::uint32_t i = 0; i < scene.lights.size(); ++i) primitive_lights[scene.lights[i].primitive] = i;
+  for (std::uint32_t i = 0; i < scene.lights.size(); ++i)
+    if (scene.lights[i].kind == pathtracer::LightKind::triangle) primitive_lights[scene.lights[i].primitive] = i;
   result.primitive_lights = buffer_of(device, primitive_lights, "lights of primitives");
+  result.environment_cells = buffer_of(
+      device,
+      scene.environment_cells.empty() ? std::vector<pathtracer::GpuEnvironmentCell>(1) : scene.environment_cells,
+      "environment cells");
+  result.media = buffer_of(device, scene.media.empty() ? std::vector<pathtracer::GpuMedium>(1) : scene.media, "media");
   result.unused = buffer_of(device, std::vector<std::uint32_t>(256), "not used");
 
   std::vector<std::uint32_t> indices;
@@ -141,8 +159,9 @@ RenderConstants render_constants(const glm::vec3& position, std::uint32_t width,
 std::vector<rhi::BindGroupEntry> scene_entries(const rhi::PipelineInterface& interface, const DeviceScene& scene,
                                                const rhi::BufferHandle& constants) {
   const std::map<std::uint32_t, rhi::BufferHandle> buffers = {
-      {1, scene.positions}, {2, scene.normals},          {3, scene.triangles}, {4, scene.materials},
-      {5, scene.lights},    {9, scene.primitive_lights}, {13, constants}};
+      {1, scene.positions},          {2, scene.normals}, {3, scene.triangles},
+      {4, scene.materials},          {5, scene.lights},  {9, scene.primitive_lights},
+      {11, scene.environment_cells}, {12, scene.media},  {13, constants}};
   std::vector<rhi::BindGroupEntry> entries;
   for (const rhi::ShaderBinding& binding : interface.bindings) {
     if (binding.set != 0) continue;
@@ -154,11 +173,21 @@ std::vector<rhi::BindGroupEntry> scene_entries(const rhi::PipelineInterface& int
   return entries;
 }
 
-Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches) {
+rhi::ComputePipelineHandle path_trace_pipeline(rhi::Device& device, std::uint32_t features) {
   std::ifstream file(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "shaders" / "path_trace.comp");
   const std::string source(std::istreambuf_iterator<char>(file), {});
-  const rhi::ComputePipelineHandle pipeline = compute_pipeline(device, source, "path_trace");
+  std::vector<rhi::SpecializationValue> specialization;
+  for (std::uint32_t id = 0; id < pathtracer::feature::count; ++id)
+    specialization.push_back({.id = id, .value = features >> id & 1u});
+  return compute_pipeline(device, source, "path_trace", specialization);
+}
 
+Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches) {
+  return path_trace(device, path_trace_pipeline(device), scene, dispatches);
+}
+
+Rendering path_trace(rhi::Device& device, const rhi::ComputePipelineHandle& pipeline, const DeviceScene& scene,
+                     const std::vector<RenderConstants>& dispatches) {
   const std::size_t pixel_count = std::size_t{dispatches.front().resolution.x} * dispatches.front().resolution.y;
   const rhi::BufferHandle sum = buffer_of(device, std::vector<float>(3 * pixel_count), "radiance sum");
   const rhi::BufferHandle counts = buffer_of(device, std::vector<std::uint32_t>(pixel_count), "ray counts");

@@ -17,6 +17,8 @@ struct TestScene {
   std::vector<pathtracer::GpuTriangle> triangles;
   std::vector<pathtracer::GpuMaterial> materials;
   std::vector<pathtracer::GpuLight> lights;
+  std::vector<pathtracer::GpuMedium> media;
+  std::vector<pathtracer::GpuEnvironmentCell> environment_cells;
 
   /// A diffuse, black, not emissive material to start from. Returns its index.
   std::uint32_t add_material(const pathtracer::GpuMaterial& material);
@@ -27,6 +29,8 @@ struct TestScene {
   void add_sphere(const glm::dvec3& centre, double radius, int subdivisions, std::uint32_t material);
   /// Makes every emissive triangle a light, all with equal probability.
   void add_lights();
+  /// A closed box of quads that are seen counter-clockwise from outside.
+  void add_box(const glm::vec3& minimum, const glm::vec3& maximum, std::uint32_t material);
 };
 
 pathtracer::GpuMaterial diffuse(const glm::vec3& albedo, const glm::vec3& emission = glm::vec3(0));
@@ -41,6 +45,8 @@ struct DeviceScene {
   rhi::BufferHandle materials;
   rhi::BufferHandle lights;
   rhi::BufferHandle primitive_lights;
+  rhi::BufferHandle environment_cells;
+  rhi::BufferHandle media;
   rhi::BufferHandle unused;  ///< stands in for what the scene has nothing of
   rhi::AccelerationStructureHandle bottom_level;
   rhi::AccelerationStructureHandle top_level;
@@ -66,7 +72,12 @@ struct Rendering {
   std::vector<std::uint32_t> ray_counts;
 };
 
+/// path_trace.comp. @param features bit i is the specialisation constant i of shaders/features.glsl
+rhi::ComputePipelineHandle path_trace_pipeline(rhi::Device& device, std::uint32_t features = 0);
+
 /// Runs path_trace.comp once for each of `dispatches`, which share a resolution.
+Rendering path_trace(rhi::Device& device, const rhi::ComputePipelineHandle& pipeline, const DeviceScene& scene,
+                     const std::vector<RenderConstants>& dispatches);
 Rendering path_trace(rhi::Device& device, const DeviceScene& scene, const std::vector<RenderConstants>& dispatches);
 
 }  // namespace tandem::test
