@@ -30,7 +30,7 @@ endforeach()
 install(TARGETS ${tandem_installed_libraries} EXPORT TandemTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT TandemTargets NAMESPACE Tandem:: DESTINATION "${TANDEM_INSTALL_PACKAGE}")
 
-foreach(folder rhi devices glsl pathtracer compare conformance rhi_cpu/kernel)
+foreach(folder rhi devices glsl pathtracer compare conformance study rhi_cpu/kernel)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}" DESTINATION "${TANDEM_INSTALL_HEADERS}/${parent}"
           FILES_MATCHING PATTERN "*.hpp")

@@ -25,5 +25,6 @@ void add_generate_command(CLI::App& app, Action& action);
 void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_conformance_command(CLI::App& app, Action& action);
+void add_study_command(CLI::App& app, Action& action);
 
 }  // namespace tandem::tools

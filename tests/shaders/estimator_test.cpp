@@ -9,6 +9,7 @@
 
 #include <doctest/doctest.h>
 
+#include "study/convergence.hpp"
 #include "tests/shaders/function_kernel.hpp"
 #include "tests/statistics/chi_square.hpp"
 #include "tests/statistics/means.hpp"
@@ -168,7 +169,7 @@ TANDEM_DEVICE_TEST("The error of estimates falls as N^-1/2; stratified and with 
     std::vector<double> errors;
     for (const double count : counts)
       errors.push_back(rms_error(estimates(device, mean_method, order.draw, static_cast<std::uint32_t>(count), 200)));
-    const test::Line line = test::convergence(counts, errors);
+    const study::Line line = study::convergence(counts, errors);
     INFO(order.draw, ": slope ", line.slope);
     CHECK(line.slope > order.least);
     CHECK(line.slope < order.most);

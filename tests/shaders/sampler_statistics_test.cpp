@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "study/convergence.hpp"
 #include "tests/shaders/sampler_draws.hpp"
 #include "tests/statistics/chi_square.hpp"
 #include "tests/statistics/means.hpp"
@@ -170,7 +171,7 @@ TANDEM_DEVICE_TEST("The error of a smooth integrand falls as N^-1/2 with indepen
     for (const double count : counts)
       rmse.push_back(
           std::sqrt(mean_square(errors(device, order.sampler, 16, static_cast<std::uint32_t>(count), order.numbers))));
-    const test::Line line = test::convergence(counts, rmse);
+    const study::Line line = study::convergence(counts, rmse);
     INFO(order.sampler.name, ", ", order.numbers, " numbers: slope ", line.slope, ", error with 256 samples ",
          rmse.back());
     CHECK(line.slope > order.least);

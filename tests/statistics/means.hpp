@@ -31,16 +31,4 @@ double welch_p_value(const Mean& a, const Mean& b);
 /// @param tile side in pixels; what is left over at the right and lower edges forms smaller tiles
 double tiles_p_value(std::span<const pathtracer::Image> a, std::span<const pathtracer::Image> b, std::uint32_t tile);
 
-/// A line through points by least squares.
-struct Line {
-  double slope = 0;
-  double intercept = 0;
-  double slope_error = 0;  ///< standard error of the slope; 0 for two points
-};
-Line fit_line(std::span<const double> x, std::span<const double> y);
-
-/// The line through (log count, log error): its slope is the order of convergence, -1/2 for independent samples. All
-/// numbers positive.
-Line convergence(std::span<const double> counts, std::span<const double> errors);
-
 }  // namespace tandem::test

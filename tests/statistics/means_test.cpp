@@ -61,14 +61,3 @@ TEST_CASE("Images of the same scene agree tile by tile, and one tile that differ
   // The mean of 4 x 8 pixels of 6 images has a standard error of 0.04.
   CHECK(test::tiles_p_value(noise(4, 0), noise(5, 2.0f), 8) < 1e-6);
 }
-
-TEST_CASE("The slope of convergence is found") {
-  const std::vector<double> counts = {1, 4, 16, 64};
-  const test::Line exact = test::convergence(counts, std::vector<double>{3, 1.5, 0.75, 0.375});
-  CHECK(exact.slope == doctest::Approx(-0.5));
-  CHECK(std::exp(exact.intercept) == doctest::Approx(3));
-  CHECK(exact.slope_error < 1e-9);
-  const test::Line rough = test::convergence(counts, std::vector<double>{3, 1.4, 0.8, 0.36});
-  CHECK(rough.slope_error > 0.01);
-  CHECK(std::abs(rough.slope + 0.5) < 3 * rough.slope_error);
-}
