@@ -21,6 +21,8 @@ EntryPoint compute_shader(PathTraceTask task) {
       return {shaders::path_log(), "path_log.comp"};
     case PathTraceTask::answer:
       return {shaders::ray_answer(), "ray_answer.comp"};
+    case PathTraceTask::first_hit:
+      return {shaders::first_hit(), "first_hit.comp"};
     default:
       return {shaders::path_trace(), "path_trace.comp"};
   }
@@ -32,6 +34,8 @@ EntryPoint ray_generation_shader(PathTraceTask task) {
       return {shaders::path_log_rgen(), "path_log.rgen"};
     case PathTraceTask::answer:
       return {shaders::ray_answer_rgen(), "ray_answer.rgen"};
+    case PathTraceTask::first_hit:
+      return {shaders::first_hit_rgen(), "first_hit.rgen"};
     default:
       return {shaders::path_trace_rgen(), "path_trace.rgen"};
   }

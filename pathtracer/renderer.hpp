@@ -65,15 +65,21 @@ class Renderer {
   /// rays, milliseconds, version.
   ImageMetadata metadata() const;
 
+  /// What pixels show first, averaged over samples 0 to `samples` - 1: albedo, normal (of shading, world space), depth
+  /// (distance), coverage (the fraction of samples that hit anything; the others count as albedo 0, and not at all for
+  /// normal and depth), and of sample 0 the primitive (triangles as the device numbers them, then spheres) and the
+  /// material, 2^32 - 1 for none. Changes nothing. @param samples at least 1
+  std::vector<ImageChannel> first_hits(std::uint32_t samples);
+
   /// The rays that each path traces under the settings, in order, with the answers of this device. Changes nothing.
   std::vector<std::vector<TracedRay>> log_paths(std::span<const PathId> paths);
   /// This device's answers to rays that it may not have traced itself.
   std::vector<std::uint32_t> answer(std::span<const TracedRay> rays);
 
  private:
-  /// Runs a task over buffers that are bound from binding 2 of set 1 on. @param count invocations
-  void run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers, std::uint32_t count,
-                std::uint32_t sample_count);
+  /// Runs a task over buffers that are bound from binding 2 of set 1 on, one submission for each dispatch.
+  void run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers,
+                std::span<const DispatchConstants> dispatches);
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);

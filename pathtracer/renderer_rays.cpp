@@ -40,8 +40,8 @@ std::vector<T> load(rhi::Device& device, const rhi::BufferHandle& buffer, std::s
 
 }  // namespace
 
-void Renderer::run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers, std::uint32_t count,
-                        std::uint32_t sample_count) {
+void Renderer::run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers,
+                        std::span<const DispatchConstants> dispatches) {
   const PathTraceProgram program(*device_, trace_, program_->features(), task);
   const rhi::PipelineHandle& pipeline = program.pipeline();
   std::vector<rhi::BindGroupEntry> entries;
@@ -54,10 +54,11 @@ void Renderer::run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>
                                   .entries = scene_.entries(pipeline->interface(), constants_buffer_),
                                   .label = "scene"}),
       device_->create_bind_group({.pipeline = pipeline, .set = 1, .entries = entries, .label = "rays"})};
-  const DispatchConstants constants{.tile_size = {count, 1}, .sample_count = sample_count};
-  const rhi::CommandListHandle list = device_->create_command_list("rays one by one");
-  program.record(*list, groups, constants);
-  device_->submit(list)->wait();
+  for (const DispatchConstants& constants : dispatches) {
+    const rhi::CommandListHandle list = device_->create_command_list("rays one by one");
+    program.record(*list, groups, constants);
+    device_->submit(list)->wait();
+  }
 }
 
 std::vector<std::vector<TracedRay>> Renderer::log_paths(std::span<const PathId> paths) {
@@ -74,7 +75,8 @@ std::vector<std::vector<TracedRay>> Renderer::log_paths(std::span<const PathId> 
     const rhi::BufferHandle log = device_->create_buffer(
         {.size = count * rays_per_path * sizeof(TracedRay), .usage = rhi::BufferUsage::storage, .label = "ray log"});
     const rhi::BufferHandle id_buffer = store(*device_, ids, "paths");
-    run_task(PathTraceTask::log, {log, id_buffer}, static_cast<std::uint32_t>(count), rays_per_path);
+    const DispatchConstants constants{.tile_size = {count, 1}, .sample_count = rays_per_path};
+    run_task(PathTraceTask::log, {log, id_buffer}, {&constants, 1});
     ids = load<GpuPathId>(*device_, id_buffer, count);
     const std::vector<TracedRay> rays = load<TracedRay>(*device_, log, count * rays_per_path);
     for (std::size_t i = 0; i < count; ++i) {
@@ -92,7 +94,8 @@ std::vector<std::uint32_t> Renderer::answer(std::span<const TracedRay> rays) {
   for (std::size_t first = 0; first < rays.size(); first += batch) {
     const std::span<const TracedRay> some = rays.subspan(first, std::min(batch, rays.size() - first));
     const rhi::BufferHandle log = store(*device_, std::vector<TracedRay>(some.begin(), some.end()), "rays");
-    run_task(PathTraceTask::answer, {log}, static_cast<std::uint32_t>(some.size()), 0);
+    const DispatchConstants constants{.tile_size = {some.size(), 1}, .sample_count = 0};
+    run_task(PathTraceTask::answer, {log}, {&constants, 1});
     for (const TracedRay& ray : load<TracedRay>(*device_, log, some.size())) answers.push_back(ray.answer);
   }
   return answers;

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "pathtracer/error.hpp"
 #include "pathtracer/image_io.hpp"
 #include "tools/command.hpp"
 #include "tools/messages.hpp"
@@ -19,17 +21,22 @@ struct Options {
   std::string device = "cpu";
   std::filesystem::path output;
   pathtracer::Tone tone;
+  bool layers = false;  ///< what pixels show first, beside the picture
 };
 
 int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
+  if (options.layers && options.output.extension() != ".exr")
+    throw pathtracer::Error(fmt::format("--layers: '{}' is no .exr, which alone has layers", options.output.string()));
   const RenderJob job = load_job(options.render);
   const rhi::DeviceHandle device = open_device(options.device, options.render);
   pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
   const Rendering rendering = render(renderer, device->info(), job.samples);
   print_warnings(rendering.warnings);
+  std::vector<pathtracer::ImageChannel> layers;
+  if (options.layers) layers = renderer.first_hits(job.samples);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {
-                          pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone);
+                          pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone, layers);
                         }};
   write_or_rescue({&file, 1});
   fmt::print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
@@ -48,6 +55,9 @@ void add_render_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "Image: .exr (linear, 32-bit float) or .png (8 bits)")
       ->required()
       ->type_name("FILE");
+  command->add_flag(
+      "--layers", options->layers,
+      "Add to the .exr what pixels show first: albedo, normal, depth, coverage, ids of primitive and material");
   add_tone_options(*command, options->tone);
   command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
       ->type_name("D")
