@@ -9,6 +9,7 @@ namespace {
 constexpr Features built[] = {
     0,
     feature::transparency,
+    feature::transparency | feature::spheres | feature::cameras,
     feature::textures | feature::materials | feature::lights | feature::cameras | feature::samplers | feature::options,
     feature::all,
 };

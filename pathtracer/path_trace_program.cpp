@@ -44,7 +44,8 @@ EntryPoint ray_generation_shader(PathTraceTask task) {
 /// Other tasks than the picture are rare, so fewer sets are built for them.
 Features rounded(Features needed, PathTraceTask task) {
   const Features features = built_features(needed);
-  if (task == PathTraceTask::picture || (features & ~feature::transparency) == 0) return features;
+  constexpr Features light = feature::transparency | feature::spheres | feature::cameras;
+  if (task == PathTraceTask::picture || (features & ~light) == 0) return features;
   return feature::all;
 }
 

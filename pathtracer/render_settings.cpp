@@ -70,7 +70,7 @@ RenderSettings render_settings(const SceneSettings& given) {
 }
 
 Features features_of(const RenderSettings& settings) {
-  Features features = 0;
+  Features features = settings.further_features;
   if (settings.sampler != SamplerKind::independent) features |= feature::samplers;
   const bool is_usual = settings.integrator == Integrator::path && settings.light_sampling &&
                         settings.mis == Mis::power && settings.bsdf_sampling == BsdfSampling::bsdf &&

@@ -39,6 +39,9 @@ struct RenderSettings {
   float clamp_indirect = 0;
   float occlusion_length = 1e30f;  ///< of the rays of ambient occlusion, in units of the scene
 
+  /// Of the shaders, beyond those that scene and settings need: they cost time and change no bit of the picture.
+  Features further_features = 0;
+
   /// Seconds that one submission should take at most; it may take several times as long where the scene is uneven.
   double submission_seconds = 0.25;
   /// Side of the largest tile of one submission in pixels, 0 for no bound. It never changes the picture.

@@ -23,11 +23,11 @@ TANDEM_DEVICE_TEST("Ray queries and a ray tracing pipeline render the scenes tha
     MESSAGE(device.info().name << " has one form only, so there is nothing to compare");
     return;
   }
-  int count = 0;
-  for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(scenes)) {
-    if (entry.path().extension() != ".obj") continue;
-    CAPTURE(entry.path().filename().string());
-    const Scene scene = load_obj(entry.path());
+  // Further scenes are compared by whoever asks for it: some drivers take minutes to compile a pipeline with all
+  // features.
+  for (const char* file : {"cornell_box.obj", "cornell_spheres.obj", "foliage.obj"}) {
+    CAPTURE(file);
+    const Scene scene = load_obj(scenes / file);
     const RenderSettings settings{.width = 90, .height = 70, .max_depth = 8};
     Renderer query(test::handle(device), scene, settings, TraceForm::query);
     Renderer pipeline(test::handle(device), scene, settings, TraceForm::pipeline);
@@ -38,9 +38,7 @@ TANDEM_DEVICE_TEST("Ray queries and a ray tracing pipeline render the scenes tha
     CHECK(test::estimate(query.image()).mean > 0.01);
     CHECK(query.metadata().at("trace") == "query");
     CHECK(pipeline.metadata().at("trace") == "pipeline");
-    ++count;
   }
-  CHECK(count == 3);
 }
 
 TANDEM_DEVICE_TEST("A device without ray queries renders through a pipeline, in whatever tiles and batches") {
