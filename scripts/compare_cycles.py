@@ -1,9 +1,9 @@
 """Renders an OBJ scene with Blender's Cycles and compares the picture with Tandem's, region by region.
 
-Run by scripts/compare-cycles: blender --background --python compare_cycles.py -- SCENE.obj FOLDER RUNS REGIONS
+Run by scripts/compare-cycles: blender --background --python compare_cycles.py -- SCENE.obj FOLDER RUNS REGIONS LAMPS
 FOLDER holds Tandem's pictures tandem_0.exr, tandem_1.exr, ... of different seeds, all of the same size, samples and
 depth, and gets those of Cycles. Only what the shipped Cornell boxes use is translated: diffuse, mirror and smooth glass
-materials, emission, vertex normals.
+materials, emission, vertex normals. LAMPS is on when Cycles may send rays to lamps, else off.
 """
 
 import json
@@ -64,9 +64,10 @@ def read_obj(path):
     return positions, normals, faces, libraries
 
 
-def make_material(name, source):
+def make_material(name, source, samples_lamps):
     material = bpy.data.materials.new(name)
     material.use_nodes = True
+    material.cycles.sample_as_light = samples_lamps
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     output = nodes.new("ShaderNodeOutputMaterial")
@@ -94,7 +95,7 @@ def make_material(name, source):
     return material
 
 
-def build_scene(path):
+def build_scene(path, samples_lamps):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     positions, normals, faces, libraries = read_obj(path)
     folder = path.rsplit("/", 1)[0] if "/" in path else "."
@@ -114,7 +115,7 @@ def build_scene(path):
                 polygon.use_smooth = True
             mesh.use_auto_smooth = True
             mesh.normals_split_custom_set([normals[normal] for corners in own for _, normal in corners])
-        mesh.materials.append(make_material(name, source))
+        mesh.materials.append(make_material(name, source, samples_lamps))
         bpy.context.scene.collection.objects.link(bpy.data.objects.new(name, mesh))
 
 
@@ -201,10 +202,10 @@ class Regions:
 
 
 def main():
-    scene_path, folder, runs, regions = sys.argv[sys.argv.index("--") + 1 :]
+    scene_path, folder, runs, regions, lamps = sys.argv[sys.argv.index("--") + 1 :]
     runs, regions = int(runs), int(regions)
     metadata = metadata_of(f"{folder}/tandem_0.exr")
-    build_scene(scene_path)
+    build_scene(scene_path, lamps == "on")
     place_camera(metadata["camera"])
     for run in range(runs):
         render(f"{folder}/cycles_{run}.exr", metadata, run + 1)
@@ -232,6 +233,7 @@ def main():
         "size": metadata["size"],
         "samples": int(metadata["samples"]) * runs,
         "depth": int(metadata["depth"]),
+        "cycles_samples_lamps": lamps == "on",
         "mean_tandem": mean_ours,
         "mean_cycles": mean_theirs,
         "relative_difference_of_means": [a / b - 1 for a, b in zip(mean_ours, mean_theirs)],
