@@ -112,8 +112,8 @@ rhi::BottomLevelDesc describe_spheres(rhi::Device& device, rhi::CommandList& lis
 
 Scene in_device_order(const Scene& scene) {
   Scene sorted = scene;
-  std::ranges::stable_partition(sorted.triangles,
-                                [&](const GpuTriangle& triangle) { return !is_transparent(scene, triangle); });
+  std::stable_partition(sorted.triangles.begin(), sorted.triangles.end(),
+                        [&](const GpuTriangle& triangle) { return !is_transparent(scene, triangle); });
   return sorted;
 }
 

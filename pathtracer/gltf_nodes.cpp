@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -71,8 +70,8 @@ std::vector<GltfNode> place_gltf_nodes(const GltfDocument& document) {
   };
   const std::vector<tinygltf::Node>& nodes = document.model.nodes;
   std::vector<Pending> pending;
-  for (const int root : root_nodes(document) | std::views::reverse)
-    pending.push_back({root, "the scene", glm::dmat4(1)});
+  const std::vector<int> roots = root_nodes(document);
+  for (auto root = roots.rbegin(); root != roots.rend(); ++root) pending.push_back({*root, "the scene", glm::dmat4(1)});
   std::vector<bool> is_placed(nodes.size());
   std::vector<GltfNode> placed;
   while (!pending.empty()) {
@@ -84,7 +83,8 @@ std::vector<GltfNode> place_gltf_nodes(const GltfDocument& document) {
     if (is_placed[index]) throw gltf_error(document, node.name, "has two parents, or is its own ancestor");
     is_placed[index] = true;
     node.transform = next.transform * local_transform(document, source, node.name);
-    for (const int child : source.children | std::views::reverse) pending.push_back({child, node.name, node.transform});
+    for (auto child = source.children.rbegin(); child != source.children.rend(); ++child)
+      pending.push_back({*child, node.name, node.transform});
     placed.push_back(std::move(node));
   }
   return placed;

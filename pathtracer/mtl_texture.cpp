@@ -37,12 +37,13 @@ std::optional<std::filesystem::path> find_texture(const std::filesystem::path& f
 std::uint32_t texture_of(Scene& scene, TextureFiles& files, const std::filesystem::path& file, const MaterialMap& map) {
   const auto [entry, is_new] = files.try_emplace({file, map.kind}, static_cast<std::uint32_t>(scene.images.size()));
   if (is_new) scene.images.push_back(load(file, map.kind));
+  const std::uint32_t image = entry->second;
   const auto same = [&](const Texture& texture) {
-    return texture.image == entry->second && same_use(texture.gpu, map.texture);
+    return texture.image == image && same_use(texture.gpu, map.texture);
   };
   const auto known = std::ranges::find_if(scene.textures, same);
   const auto index = static_cast<std::uint32_t>(known - scene.textures.begin());
-  if (known == scene.textures.end()) scene.textures.push_back({.gpu = map.texture, .image = entry->second});
+  if (known == scene.textures.end()) scene.textures.push_back({.gpu = map.texture, .image = image});
   return index;
 }
 
