@@ -209,9 +209,9 @@ void check_no_duplicates(Context& context, const rhi::Geometry& pile, std::uint3
 }
 
 void add_no_duplicate_cases(const Group& group) {
-  const GeometryFlags flags = GeometryFlags::no_duplicate_any_hit;
+  constexpr GeometryFlags flags = GeometryFlags::no_duplicate_any_hit;
   group.add("no_duplicates_triangles", "with the flag of the geometry each triangle is offered once",
-            [flags](Context& context) {
+            [](Context& context) {
               // Long and thin in the diagonal: what a builder that splits triangles would split.
               std::vector<glm::vec3> vertices;
               for (std::uint32_t i = 0; i < most_candidates; ++i) {
@@ -220,7 +220,7 @@ void add_no_duplicate_cases(const Group& group) {
               }
               check_no_duplicates(context, triangles(context.device(), vertices, flags), most_candidates);
             });
-  group.add("no_duplicates_boxes", "with the flag of the geometry each box is offered once", [flags](Context& context) {
+  group.add("no_duplicates_boxes", "with the flag of the geometry each box is offered once", [](Context& context) {
     std::vector<Box> pile;
     for (std::uint32_t i = 0; i < most_candidates; ++i) {
       const float size = 1.0f + static_cast<float>(i * i);

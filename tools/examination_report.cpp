@@ -54,7 +54,8 @@ std::string table(const compare::Examination& examination, const std::string& ar
                    examination.parted_by_rounding, examination.parted_by_length, examination.unparted_pixels));
   // Those that matter first.
   std::vector<compare::JudgedDispute> listed = examination.disputes;
-  std::ranges::stable_partition(listed, [](const auto& each) { return each.judgement.ruling != Ruling::tie; });
+  std::stable_partition(listed.begin(), listed.end(),
+                        [](const auto& each) { return each.judgement.ruling != Ruling::tie; });
   listed.resize(std::min(listed.size(), most_listed));
   for (const compare::JudgedDispute& judged : listed) line("", sentence(judged, examination.triangle_count));
   if (listed.size() < examination.disputes.size())
