@@ -28,8 +28,8 @@ inline constexpr Features all = (1u << count) - 1;
 /// What the shaders must be able to do for the scene; the settings may need more.
 Features features_of(const Scene& scene);
 
-/// The smallest set with all of `needed` that the shaders are built for (the SPECIALIZATIONS of shaders/CMakeLists.txt), so
-/// that no device has to compile one of 512.
+/// The smallest set with all of `needed` that the shaders are built for (the SPECIALIZATIONS of
+/// shaders/CMakeLists.txt), so that no device has to compile one of 512.
 Features built_features(Features needed);
 
 /// For the desc of a pipeline.
