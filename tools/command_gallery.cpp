@@ -11,11 +11,11 @@
 #include "pathtracer/error.hpp"
 #include "pathtracer/image_io.hpp"
 #include "tools/command.hpp"
+#include "tools/comparison.hpp"
 #include "tools/device_json.hpp"
 #include "tools/gallery.hpp"
 #include "tools/option_values.hpp"
 #include "tools/output_file.hpp"
-#include "tools/rendering.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -43,39 +43,30 @@ std::vector<GalleryScene> chosen_scenes(const Options& options) {
   return scenes;
 }
 
-GalleryResult render_scene(const GalleryScene& scene, const Options& options, const rhi::DeviceHandle& device_a,
-                           const rhi::DeviceHandle& device_b) {
+GalleryResult render_scene(const GalleryScene& scene, const Options& options, const ComparedDevices& devices) {
   RenderOptions render_options;
   render_options.scene = scene.file;
   render_options.size = options.size;
   render_options.settings.samples = options.samples.value_or(scene.samples);
-  const RenderJob job = load_job(render_options);
-  GalleryResult result{.scene = scene, .report = {}};
-  DiffReport& report = result.report;
-  report.job = summary(render_options, job);
-  report.tolerance = scene.tolerance;
-  const auto render_on = [&](const rhi::DeviceHandle& device) {
-    pathtracer::Renderer renderer(device, job.scene, job.settings);
-    return render(renderer, device->info(), job.samples);
-  };
-  report.a = render_on(device_a);
-  report.b = render_on(device_b);
-  report.metrics = compare::measure(report.a.image, report.b.image);
-  report.verdict = compare::judge(report.metrics, report.tolerance);
-  return result;
+  ComparisonOptions comparison_options;
+  comparison_options.tolerance = scene.tolerance;
+  Comparison comparison = prepare(comparison_options, render_options, load_job(render_options), devices);
+  return {.scene = scene, .report = compare_devices(comparison)};
 }
 
 int render_gallery(const Options& options) {
   const std::vector<GalleryScene> scenes = chosen_scenes(options);
   RenderOptions device_options;
   device_options.threads = options.threads;
-  const rhi::DeviceHandle device_a = open_device(options.devices.at(0), device_options);
-  const rhi::DeviceHandle device_b = open_device(options.devices.at(1), device_options);
+  ComparisonOptions comparison;
+  comparison.a = options.devices.at(0);
+  comparison.b = options.devices.at(1);
+  const ComparedDevices devices = open_devices(comparison, device_options);
   const OutputFolder folder(options.folder);
   const OutputFolder pictures(options.folder / pictures_folder);
   std::vector<GalleryResult> results;
   for (const GalleryScene& scene : scenes) {
-    GalleryResult result = render_scene(scene, options, device_a, device_b);
+    GalleryResult result = render_scene(scene, options, devices);
     DiffReport& report = result.report;
     const auto write = [&](const std::string& name, const pathtracer::Image& image) {
       pathtracer::write_image(pictures.path() / name, reduced(image, largest_picture), {});

@@ -1,0 +1,73 @@
+#include "tools/comparison.hpp"
+
+#include <utility>
+
+#include "tools/option_values.hpp"
+
+namespace tandem::tools {
+
+void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
+  add_trace_form(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
+  add_trace_form(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
+  command
+      .add_option("--arbiter", options.arbiter,
+                  "Ask this device, for the pixels that differ, which of the two chose the right triangle: cpu-exact")
+      ->type_name("D3");
+  add_whole_number(command, "--arbiter-pixels", options.arbiter_pixels, 1, std::uint64_t{1} << 24,
+                   "Pixels to examine at most");
+  CLI::App& tolerance = *command.add_option_group("Tolerance", "When the images agree");
+  add_number(tolerance, "--min-within-1e3", options.tolerance.within_1e3, 0.0, 1.0,
+             "Least fraction of pixels within 1e-3 relative");
+  add_number(tolerance, "--min-bit-equal", options.tolerance.bit_equal, 0.0, 1.0, "Least fraction of bit-equal pixels");
+  add_number(tolerance, "--max-mean-difference", options.tolerance.mean, 0.0, 1.0,
+             "Largest relative difference of the images' means");
+  add_whole_number(tolerance, "--max-non-finite", options.tolerance.non_finite, 0, std::uint64_t{1} << 32,
+                   "Most pixels of an image with a NaN or an infinity");
+}
+
+ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptions& render_options) {
+  ComparedDevices devices;
+  devices.a = open_device(options.a, render_options);
+  devices.b = open_device(options.b, render_options);
+  if (!options.arbiter.empty()) devices.arbiter = open_device(options.arbiter, render_options);
+  return devices;
+}
+
+Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
+                   ComparedDevices devices) {
+  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace) {
+    return pathtracer::Renderer(device, job.scene, job.settings, trace);
+  };
+  pathtracer::Renderer a = renderer(devices.a, options.trace_a ? options.trace_a : render_options.trace);
+  pathtracer::Renderer b = renderer(devices.b, options.trace_b ? options.trace_b : render_options.trace);
+  std::optional<pathtracer::Renderer> arbiter;
+  if (devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
+  JobSummary job_summary = summary(render_options, job);
+  return {.options = options,
+          .summary = std::move(job_summary),
+          .job = std::move(job),
+          .devices = std::move(devices),
+          .a = std::move(a),
+          .b = std::move(b),
+          .arbiter = std::move(arbiter)};
+}
+
+DiffReport compare_devices(Comparison& comparison) {
+  const ComparisonOptions& options = comparison.options;
+  const RenderJob& job = comparison.job;
+  DiffReport report;
+  report.job = comparison.summary;
+  report.tolerance = options.tolerance;
+  report.a = render(comparison.a, comparison.devices.a->info(), job.samples);
+  report.b = render(comparison.b, comparison.devices.b->info(), job.samples);
+  report.metrics = compare::measure(report.a.image, report.b.image);
+  report.verdict = compare::judge(report.metrics, report.tolerance);
+  if (comparison.arbiter) {
+    report.arbiter = options.arbiter;
+    report.examination = compare::examine(comparison.a, comparison.b, *comparison.arbiter, report.a.image,
+                                          report.b.image, job.samples, job.scene, options.arbiter_pixels);
+  }
+  return report;
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "compare/verdict.hpp"
+#include "pathtracer/renderer.hpp"
+#include "pathtracer/trace_form.hpp"
+#include "rhi/device.hpp"
+#include "tools/diff_report.hpp"
+#include "tools/job_report.hpp"
+#include "tools/render_options.hpp"
+#include "tools/rendering.hpp"
+
+/// One scene rendered on two devices and compared: what diff, gallery, suite and matrix share. A part of the comparison
+/// beyond pictures, metrics and verdict has its options in ComparisonOptions, is declared in add_comparison_options,
+/// done in compare_devices, and kept in an optional member of DiffReport.
+namespace tandem::tools {
+
+/// What is compared, beside the scene, and how.
+struct ComparisonOptions {
+  std::string a = "cpu";                         ///< the first device, the reference
+  std::string b = "vulkan";                      ///< the second
+  std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of the RenderOptions
+  std::optional<pathtracer::TraceForm> trace_b;
+  compare::Tolerance tolerance;
+  std::string arbiter;  ///< the device that judges pixels that differ; empty: nobody is asked
+  std::uint64_t arbiter_pixels = 1000;
+};
+
+/// Declares the options on the command, all but the devices a and b. `options` must outlive the parsing.
+void add_comparison_options(CLI::App& command, ComparisonOptions& options);
+
+struct ComparedDevices {
+  rhi::DeviceHandle a, b;
+  rhi::DeviceHandle arbiter;  ///< null: nobody is asked
+};
+
+/// Throws rhi::Error for a device that is not there.
+ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptions& render_options);
+
+/// A scene set up on the devices, before any rendering.
+struct Comparison {
+  ComparisonOptions options;
+  JobSummary summary;
+  RenderJob job;
+  ComparedDevices devices;
+  pathtracer::Renderer a, b;
+  std::optional<pathtracer::Renderer> arbiter;
+};
+
+/// Uploads the scene to every device, so that what one of them refuses does not cost a rendering on another. Throws
+/// pathtracer::Error and rhi::Error.
+Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
+                   ComparedDevices devices);
+
+/// Renders on both devices, measures, judges, and does all parts that the options ask for. Throws Interrupted.
+DiffReport compare_devices(Comparison& comparison);
+
+}  // namespace tandem::tools
