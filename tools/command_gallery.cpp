@@ -49,7 +49,7 @@ GalleryResult render_scene(const GalleryScene& scene, const Options& options, co
   render_options.size = options.size;
   render_options.settings.samples = options.samples.value_or(scene.samples);
   ComparisonOptions comparison_options;
-  comparison_options.tolerance = scene.tolerance;
+  comparison_options.usual_thresholds = gallery_thresholds();
   Comparison comparison = prepare(comparison_options, render_options, load_job(render_options), devices);
   return {.scene = scene, .report = compare_devices(comparison)};
 }
@@ -106,7 +106,7 @@ void add_gallery_command(CLI::App& app, Action& action) {
   add_whole_number(*command, "--threads", options->threads, 0, 1024,
                    "Worker threads of the CPU device; 0: as many as the machine has");
   command->footer(
-      "Exit code: 0 every scene agrees, 1 one differs beyond its tolerance, 2 error.\n"
+      "Exit code: 0 every scene agrees, 1 one differs beyond its thresholds, 2 error.\n"
       "Examples:\n"
       "  tandem gallery --out docs\n"
       "  tandem gallery --device cpu vulkan:1 --size 256x256 --only veach_mis --out gallery");

@@ -15,14 +15,7 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
       ->type_name("D3");
   add_whole_number(command, "--arbiter-pixels", options.arbiter_pixels, 1, std::uint64_t{1} << 24,
                    "Pixels to examine at most");
-  CLI::App& tolerance = *command.add_option_group("Tolerance", "When the images agree");
-  add_number(tolerance, "--min-within-1e3", options.tolerance.within_1e3, 0.0, 1.0,
-             "Least fraction of pixels within 1e-3 relative");
-  add_number(tolerance, "--min-bit-equal", options.tolerance.bit_equal, 0.0, 1.0, "Least fraction of bit-equal pixels");
-  add_number(tolerance, "--max-mean-difference", options.tolerance.mean, 0.0, 1.0,
-             "Largest relative difference of the images' means");
-  add_whole_number(tolerance, "--max-non-finite", options.tolerance.non_finite, 0, std::uint64_t{1} << 32,
-                   "Most pixels of an image with a NaN or an infinity");
+  add_threshold_options(command, options.thresholds);
 }
 
 ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptions& render_options) {
@@ -42,8 +35,11 @@ Comparison prepare(const ComparisonOptions& options, const RenderOptions& render
   pathtracer::Renderer b = renderer(devices.b, options.trace_b ? options.trace_b : render_options.trace);
   std::optional<pathtracer::Renderer> arbiter;
   if (devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
+  compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
+  apply(options.thresholds, thresholds);
   JobSummary job_summary = summary(render_options, job);
   return {.options = options,
+          .thresholds = std::move(thresholds),
           .summary = std::move(job_summary),
           .job = std::move(job),
           .devices = std::move(devices),
@@ -57,11 +53,11 @@ DiffReport compare_devices(Comparison& comparison) {
   const RenderJob& job = comparison.job;
   DiffReport report;
   report.job = comparison.summary;
-  report.tolerance = options.tolerance;
+  report.thresholds = comparison.thresholds;
   report.a = render(comparison.a, comparison.devices.a->info(), job.samples);
   report.b = render(comparison.b, comparison.devices.b->info(), job.samples);
   report.metrics = compare::measure(report.a.image, report.b.image);
-  report.verdict = compare::judge(report.metrics, report.tolerance);
+  report.verdict = compare::judge({.metrics = report.metrics}, report.thresholds);
   if (comparison.arbiter) {
     report.arbiter = options.arbiter;
     report.examination = compare::examine(comparison.a, comparison.b, *comparison.arbiter, report.a.image,

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "compare/verdict.hpp"
+#include "compare/thresholds.hpp"
 #include "pathtracer/renderer.hpp"
 #include "pathtracer/trace_form.hpp"
 #include "rhi/device.hpp"
@@ -13,6 +13,7 @@
 #include "tools/job_report.hpp"
 #include "tools/render_options.hpp"
 #include "tools/rendering.hpp"
+#include "tools/threshold_options.hpp"
 
 /// One scene rendered on two devices and compared: what diff, gallery, suite and matrix share. A part of the comparison
 /// beyond pictures, metrics and verdict has its options in ComparisonOptions, is declared in add_comparison_options,
@@ -25,7 +26,8 @@ struct ComparisonOptions {
   std::string b = "vulkan";                      ///< the second
   std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of the RenderOptions
   std::optional<pathtracer::TraceForm> trace_b;
-  compare::Tolerance tolerance;
+  compare::Thresholds usual_thresholds;  ///< where neither `thresholds` nor the scene's file says otherwise
+  ThresholdOptions thresholds;
   std::string arbiter;  ///< the device that judges pixels that differ; empty: nobody is asked
   std::uint64_t arbiter_pixels = 1000;
 };
@@ -44,6 +46,7 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
 /// A scene set up on the devices, before any rendering.
 struct Comparison {
   ComparisonOptions options;
+  compare::Thresholds thresholds;  ///< of the options, the scene's file, and the usual ones, in this order
   JobSummary summary;
   RenderJob job;
   ComparedDevices devices;
@@ -51,8 +54,8 @@ struct Comparison {
   std::optional<pathtracer::Renderer> arbiter;
 };
 
-/// Uploads the scene to every device, so that what one of them refuses does not cost a rendering on another. Throws
-/// pathtracer::Error and rhi::Error.
+/// Reads the scene's thresholds and uploads the scene to every device, so that what one of them refuses does not cost a
+/// rendering on another. Throws pathtracer::Error and rhi::Error.
 Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
                    ComparedDevices devices);
 

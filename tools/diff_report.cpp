@@ -64,6 +64,7 @@ std::string table(const DiffReport& report) {
   line("PSNR", metrics.psnr ? fmt::format("{:.2f} dB (peak {:.6g})", *metrics.psnr, metrics.peak)
                             : std::string("infinite (no difference)"));
   text += '\n';
+  line("tier", compare::name(report.verdict.tier));
   line("verdict", compare::name(report.verdict));
   for (const std::string& reason : report.verdict.reasons) line("", reason);
   if (report.examination) text += '\n' + table(*report.examination, report.arbiter);
@@ -74,6 +75,7 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
   const compare::Metrics& metrics = report.metrics;
   nlohmann::ordered_json json;
   json["verdict"] = compare::name(report.verdict);
+  json["tier"] = compare::name(report.verdict.tier);
   json["reasons"] = report.verdict.reasons;
   json["pixels"] = metrics.pixels;
   json["bit_equal"] = metrics.bit_equal;
@@ -106,10 +108,10 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
   json["settings"]["camera_target"] = vector_json(report.a.camera.target);
   json["settings"]["fov"] = report.a.camera.vertical_fov;
   json["settings"]["background"] = vector_json(report.a.background);
-  json["tolerance"] = {{"within_1e3", report.tolerance.within_1e3},
-                       {"bit_equal", report.tolerance.bit_equal},
-                       {"mean", report.tolerance.mean},
-                       {"non_finite", report.tolerance.non_finite}};
+  json["thresholds"] = nlohmann::ordered_json::object();
+  for (const compare::Rule& rule : report.thresholds.rules)
+    if (compare::applies(rule.metric, report.thresholds.tier))
+      json["thresholds"][compare::name(rule.metric)] = {{"limit", rule.limit}, {"reason", rule.reason}};
   if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
   json["version"] = TANDEM_VERSION;
   return json;

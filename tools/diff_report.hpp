@@ -18,7 +18,7 @@ struct DiffReport {
   Rendering a;
   Rendering b;
   compare::Metrics metrics;
-  compare::Tolerance tolerance;
+  compare::Thresholds thresholds;
   compare::Verdict verdict;
   std::string arbiter;                              ///< the device that judged; empty: none was asked
   std::optional<compare::Examination> examination;  ///< of the pixels that differ, where an arbiter was asked

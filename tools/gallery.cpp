@@ -12,12 +12,16 @@
 namespace tandem::tools {
 namespace {
 
-/// Where nothing speaks against it: paths that meet edges or flip a rounded decision are fewer than one in a thousand.
-constexpr double usual_bit_equal = 0.999;
+const char* const usual_bit_equal_reason =
+    "paths that meet edges or flip a rounded decision are fewer than one in a thousand";
 
 double relative_mean_difference(const compare::Metrics& metrics) {
   const double largest = std::max(std::abs(metrics.mean_a), std::abs(metrics.mean_b));
   return largest > 0 ? std::abs(metrics.mean_a - metrics.mean_b) / largest : 0.0;
+}
+
+const compare::Rule& bit_equal(const DiffReport& report) {
+  return report.thresholds.rule(compare::RuleMetric::bit_equal);
 }
 
 }  // namespace
@@ -28,22 +32,24 @@ std::vector<GalleryScene> read_gallery(const std::filesystem::path& path) {
   const Object root(Value(json, path.string(), ""), {"scenes"});
   std::vector<GalleryScene> scenes;
   for (const Value& value : root.require("scenes").elements()) {
-    const Object object(value, {"file", "title", "samples", "bit_equal", "reason"});
+    const Object object(value, {"file", "title", "samples"});
     GalleryScene scene;
     scene.file = path.parent_path() / object.require("file").text();
     scene.name = scene.file.stem().string();
     scene.title = object.require("title").text();
-    scene.tolerance.bit_equal = usual_bit_equal;
     object.read("samples", scene.samples, &Value::whole_number, 1u, 1u << 24);
-    if (const auto bit_equal = object.get("bit_equal")) scene.tolerance.bit_equal = double{bit_equal->number(fraction)};
-    object.read("reason", scene.reason, &Value::text);
-    if (object.get("bit_equal").has_value() == scene.reason.empty()) value.fail("must give a reason for its bit_equal");
     if (std::ranges::any_of(scenes, [&](const GalleryScene& other) { return other.name == scene.name; }))
       value.fail(fmt::format("has the name of another, {}", scene.name));
     scenes.push_back(scene);
   }
   if (scenes.empty()) root.require("scenes").fail("must not be empty");
   return scenes;
+}
+
+compare::Thresholds gallery_thresholds() {
+  compare::Thresholds thresholds;
+  thresholds.set({compare::RuleMetric::bit_equal, 0.999, usual_bit_equal_reason});
+  return thresholds;
 }
 
 std::string gallery_markdown(const std::vector<GalleryResult>& results, const std::string& pictures) {
@@ -66,13 +72,13 @@ std::string gallery_markdown(const std::vector<GalleryResult>& results, const st
         "| {}<br>`{}` | ![{}]({}/{}.png) | ![]({}/{}_difference.png) | {} | {:.3f} %, at least {:g} % | {:.1e} | "
         "{:.2f}, {:.2f} | {} |",
         scene.title, scene.file.filename().string(), scene.title, pictures, scene.name, pictures, scene.name,
-        settings_text(report.job), 100 * report.metrics.bit_equal, 100 * scene.tolerance.bit_equal,
+        settings_text(report.job), 100 * report.metrics.bit_equal, 100 * bit_equal(report).limit,
         relative_mean_difference(report.metrics), report.a.milliseconds / 1000, report.b.milliseconds / 1000, verdict));
   }
-  const bool has_reasons = std::ranges::any_of(results, [](const GalleryResult& r) { return !r.scene.reason.empty(); });
-  if (has_reasons) line("\nWhy some scenes may differ at more pixels:\n");
-  for (const auto& [scene, report] : results)
-    if (!scene.reason.empty()) line(fmt::format("- `{}`: {}", scene.name, scene.reason));
+  const auto is_unusual = [](const GalleryResult& r) { return bit_equal(r.report).reason != usual_bit_equal_reason; };
+  if (std::ranges::any_of(results, is_unusual)) line("\nWhy some scenes may differ at more pixels:\n");
+  for (const GalleryResult& result : results)
+    if (is_unusual(result)) line(fmt::format("- `{}`: {}", result.scene.name, bit_equal(result.report).reason));
   return text;
 }
 
@@ -82,7 +88,7 @@ nlohmann::ordered_json to_json(const std::vector<GalleryResult>& results) {
   json["verdict"] = agree ? "agree" : "differ";
   json["scenes"] = nlohmann::ordered_json::array();
   for (const auto& [scene, report] : results) {
-    nlohmann::ordered_json entry = {{"name", scene.name}, {"title", scene.title}, {"reason", scene.reason}};
+    nlohmann::ordered_json entry = {{"name", scene.name}, {"title", scene.title}};
     entry.update(to_json(report));
     json["scenes"].push_back(entry);
   }

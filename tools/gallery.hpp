@@ -16,13 +16,14 @@ struct GalleryScene {
   std::filesystem::path file;
   std::string title;
   std::uint32_t samples = 16;  ///< per pixel
-  compare::Tolerance tolerance;
-  std::string reason;  ///< of a tolerance that is not that of all; else empty
 };
 
-/// Reads the list: {"scenes": [{"file", "title", "samples", "bit_equal", "reason"}, ...]}, where the last three may be
-/// absent. Throws pathtracer::Error, naming the place.
+/// Reads the list: {"scenes": [{"file", "title", "samples"}, ...]}, where the last may be absent. Throws
+/// pathtracer::Error, naming the place.
 std::vector<GalleryScene> read_gallery(const std::filesystem::path& path);
+
+/// What scenes must keep whose own thresholds do not say otherwise.
+compare::Thresholds gallery_thresholds();
 
 /// A scene with what came of it; the report's images may be dropped.
 struct GalleryResult {

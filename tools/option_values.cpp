@@ -85,6 +85,11 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, std::optiona
   return add_in_range(command, name, value, least, most, "a number", type, description);
 }
 
+CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<double>& value, double least,
+                        double most, const std::string& description) {
+  return add_in_range(command, name, value, least, most, "a number", "X", description);
+}
+
 CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& value,
                               std::uint32_t least, std::uint32_t most, const std::string& description) {
   return add_in_range(command, name, value, least, most, "a whole number", "N", description);

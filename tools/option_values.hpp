@@ -25,6 +25,8 @@ CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::u
 /// A number from `least` to `most`, both included.
 CLI::Option* add_number(CLI::App& command, const std::string& name, double& value, double least, double most,
                         const std::string& description);
+CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<double>& value, double least,
+                        double most, const std::string& description);
 CLI::Option* add_whole_number(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& value,
                               std::uint32_t least, std::uint32_t most, const std::string& description);
 CLI::Option* add_number(CLI::App& command, const std::string& name, std::optional<float>& value, float least,

@@ -67,9 +67,13 @@ bool Value::boolean() const {
   return json_->get<bool>();
 }
 
-float Value::number(const Range& range) const {
+double Value::double_number(const Range& range) const {
   if (!json_->is_number() || !range.contains(json_->get<double>())) fail(range.sentence());
-  const float value = static_cast<float>(json_->get<double>());
+  return json_->get<double>();
+}
+
+float Value::number(const Range& range) const {
+  const float value = static_cast<float>(double_number(range));
   // Too small for a normal float: devices may take it for 0 or not.
   const bool tiny = value != 0 && std::abs(value) < std::numeric_limits<float>::min();
   if (range.above_minimum && !(value > static_cast<float>(range.minimum))) fail(range.sentence());

@@ -62,6 +62,7 @@ class Value {
   std::string text() const;
   bool boolean() const;
   float number(const Range& range = any_length) const;
+  double double_number(const Range& range) const;  ///< as it is written, not rounded to a float
   std::uint32_t whole_number(std::uint32_t minimum, std::uint32_t maximum) const;
   /// [x, y, z]
   glm::vec3 vector(const Range& each = any_length) const;
