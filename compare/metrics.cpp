@@ -1,27 +1,14 @@
 #include "compare/metrics.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <string>
 
-#include "rhi/error.hpp"
+#include "compare/image_pair.hpp"
 
 namespace tandem::compare {
 namespace {
 
 constexpr int channels = 3;
-
-bool is_finite(const glm::vec3& value) {
-  return std::isfinite(value.x) && std::isfinite(value.y) && std::isfinite(value.z);
-}
-
-bool is_bit_equal(const glm::vec3& a, const glm::vec3& b) {
-  for (int channel = 0; channel < channels; ++channel) {
-    if (std::bit_cast<std::uint32_t>(a[channel]) != std::bit_cast<std::uint32_t>(b[channel])) return false;
-  }
-  return true;
-}
 
 bool is_within(const glm::vec3& a, const glm::vec3& b, double tolerance) {
   for (int channel = 0; channel < channels; ++channel) {
@@ -32,27 +19,10 @@ bool is_within(const glm::vec3& a, const glm::vec3& b, double tolerance) {
   return true;
 }
 
-std::string size_text(const pathtracer::Image& image) {
-  return std::to_string(image.width) + "x" + std::to_string(image.height);
-}
-
-void check_sizes(const pathtracer::Image& a, const pathtracer::Image& b) {
-  using rhi::ErrorCode;
-  if (a.width != b.width || a.height != b.height) {
-    throw rhi::Error(ErrorCode::invalid_argument, "",
-                     "images of " + size_text(a) + " and " + size_text(b) + " pixels cannot be compared");
-  }
-  const std::size_t pixels = std::size_t{a.width} * a.height;
-  if (pixels == 0) throw rhi::Error(ErrorCode::invalid_argument, "", "images without pixels cannot be compared");
-  if (a.pixels.size() != pixels || b.pixels.size() != pixels) {
-    throw rhi::Error(ErrorCode::invalid_argument, "", "an image does not hold width * height pixels");
-  }
-}
-
 }  // namespace
 
 Metrics measure(const pathtracer::Image& a, const pathtracer::Image& b) {
-  check_sizes(a, b);
+  check_pair(a, b);
   std::uint64_t bit_equal = 0;
   std::uint64_t within_1e5 = 0;
   std::uint64_t within_1e3 = 0;

@@ -1,0 +1,20 @@
+#include "compare/detailed_metrics.hpp"
+
+#include "compare/ssim.hpp"
+
+namespace tandem::compare {
+
+DetailedMetrics measure_in_detail(const pathtracer::Image& a, const pathtracer::Image& b, MetricSet set) {
+  DetailedMetrics metrics;
+  metrics.ulp = ulp_histogram(a, b);
+  metrics.relative = relative_error(a, b);
+  metrics.ssim = ssim(a, b);
+  if (set == MetricSet::all) {
+    metrics.flip = flip(a, b);
+    metrics.hdr_flip = hdr_flip(a, b);
+  }
+  metrics.regions = regions(a, b, metrics.flip ? &*metrics.flip : nullptr);
+  return metrics;
+}
+
+}  // namespace tandem::compare
