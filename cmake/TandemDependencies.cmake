@@ -37,6 +37,8 @@ if(NOT embree_FOUND)
 endif()
 if(TANDEM_BUILD_TESTS)
   find_package(doctest REQUIRED CONFIG)
+  # Reads the JUnit files that the tools write.
+  find_package(pugixml REQUIRED CONFIG)
   # Rational numbers, which the exact tracer is tested against.
   find_path(TANDEM_GMP_INCLUDE_DIRECTORY gmpxx.h REQUIRED)
   find_library(TANDEM_GMP_LIBRARY gmp REQUIRED)

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "compare/difference.hpp"
+#include "pathtracer/error.hpp"
 #include "pathtracer/image_io.hpp"
 #include "tools/command.hpp"
 #include "tools/comparison.hpp"
 #include "tools/device_json.hpp"
 #include "tools/diff_report.hpp"
+#include "tools/junit.hpp"
 #include "tools/messages.hpp"
 #include "tools/output_file.hpp"
 
@@ -21,17 +23,35 @@ namespace {
 struct Options {
   RenderOptions render;
   ComparisonOptions comparison;
-  std::filesystem::path json;    ///< empty: none
-  std::filesystem::path folder;  ///< empty: no images
+  std::filesystem::path json;      ///< empty: none
+  std::filesystem::path junit;     ///< empty: none
+  std::filesystem::path folder;    ///< empty: no images
+  std::filesystem::path baseline;  ///< the folder of a stored run; empty: none
   pathtracer::Tone tone;
 };
+
+bool is_same_file(const std::filesystem::path& first, const std::filesystem::path& second) {
+  return std::filesystem::weakly_canonical(first) == std::filesystem::weakly_canonical(second);
+}
+
+JunitCase junit_case(const DiffReport& report) {
+  return {.group = report.job.scene,
+          .name = fmt::format("{} against {}", report.a.device.name, report.b.device.name),
+          .seconds = (report.a.milliseconds + report.b.milliseconds) / 1000,
+          .failures = failures(report),
+          .error = {}};
+}
 
 /// What is written once the report is complete; it refers to both.
 std::vector<OutputFile> output_files(const Options& options, const DiffReport& report) {
   std::vector<OutputFile> files;
-  if (!options.json.empty()) {
-    files.push_back(
-        {options.json, [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }});
+  const auto add_text = [&](const std::filesystem::path& path, const auto& text) {
+    files.push_back({path, [text](const std::filesystem::path& name) { write_text(name, text()); }});
+  };
+  const auto json = [&report] { return json_text(to_json(report)); };
+  if (!options.json.empty()) add_text(options.json, json);
+  if (!options.junit.empty()) {
+    add_text(options.junit, [&report] { return junit_xml("tandem diff", std::vector{junit_case(report)}); });
   }
   if (options.folder.empty()) return files;
   const auto add = [&](const char* name, const auto& image, const auto& metadata, const pathtracer::Tone& tone) {
@@ -49,6 +69,8 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
     both["device"] = report.a.device.name + " minus " + report.b.device.name;
     return both;
   };
+  const std::filesystem::path stored = options.folder / stored_report;
+  if (options.json.empty() || !is_same_file(options.json, stored)) add_text(stored, json);
   add_rendering("a.exr", report.a);
   add_rendering("a.png", report.a);
   add_rendering("b.exr", report.b);
@@ -59,19 +81,28 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
 }
 
 int diff(const Options& options) {
+  std::optional<StoredRun> baseline;
+  if (!options.baseline.empty()) {
+    if (!options.folder.empty() && is_same_file(options.folder, options.baseline))
+      throw pathtracer::Error(
+          fmt::format("--out and --baseline are both '{}': the baseline would be lost", options.folder.string()));
+    baseline = read_stored_run(options.baseline);
+  }
   RenderJob job = load_job(options.render);
   Comparison comparison =
       prepare(options.comparison, options.render, std::move(job), open_devices(options.comparison, options.render));
+  if (baseline) check_same_job(*baseline, comparison.summary, comparison.a.camera(), comparison.a.background());
   DiffReport report;
   const std::vector<OutputFile> files = output_files(options, report);
   const std::optional<OutputFolder> folder =
       options.folder.empty() ? std::nullopt : std::make_optional<OutputFolder>(options.folder);
   check_output_files(files);
   report = compare_devices(comparison);
+  if (baseline) report.baseline = compare_with(*baseline, report);
   print_warnings(report.a.warnings);
   fmt::print("{}", table(report));
   write_or_rescue(files);
-  return report.verdict.agree ? exit_code::success : exit_code::differ;
+  return failures(report).empty() ? exit_code::success : exit_code::differ;
 }
 
 }  // namespace
@@ -86,20 +117,27 @@ void add_diff_command(CLI::App& app, Action& action) {
       ->capture_default_str();
   command->add_option("--b", options->comparison.b, "The second device")->type_name("D2")->capture_default_str();
   command->add_option("--json", options->json, "Write all numbers and the verdict as JSON")->type_name("FILE");
+  command->add_option("--junit", options->junit, "Write the verdict as JUnit XML, for CI")->type_name("FILE");
   command
       ->add_option("--out", options->folder,
-                   "Write a, b and their difference as .exr and .png into this folder, made if it is missing")
+                   "Write a, b and their difference as .exr and .png, and diff.json, into this folder, made if it is "
+                   "missing")
+      ->type_name("DIR");
+  command
+      ->add_option("--baseline", options->baseline,
+                   "Compare with the run of the same scene and settings that --out stored in this folder")
       ->type_name("DIR");
   add_comparison_options(*command, options->comparison);
   add_tone_options(*command, options->tone);
   command->footer(
-      "Exit code: 0 the images agree, 1 they differ, 2 error.\n"
+      "Exit code: 0 the images agree, 1 they differ (from each other or from the baseline), 2 error.\n"
       "Examples:\n"
       "  tandem diff scenes/cornell_box.obj --a cpu --b vulkan\n"
       "  tandem diff scenes/cornell_box.obj --a vulkan:0 --b vulkan:1 --spp 64 --json diff.json --out diff\n"
       "  tandem diff scenes/foliage.obj --a cpu --trace-a query --b cpu --trace-b pipeline --min-bit-equal 1\n"
       "  tandem diff model.obj --a cpu --b vulkan --min-bit-equal 0.9999\n"
-      "  tandem diff model.obj --a cpu --b vulkan --arbiter cpu-exact");
+      "  tandem diff model.obj --a cpu --b vulkan --arbiter cpu-exact\n"
+      "  tandem diff model.obj --a cpu --b vulkan --out today --baseline yesterday");
   command->callback([&action, options] { action = [options] { return diff(*options); }; });
 }
 

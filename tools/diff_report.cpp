@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "tools/baseline_report.hpp"
 #include "tools/device_json.hpp"
 #include "tools/examination_report.hpp"
 
@@ -16,14 +17,25 @@ double mrays(const Rendering& rendering) {
   return per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds);
 }
 
-nlohmann::ordered_json vector_json(const glm::vec3& vector) { return {vector.x, vector.y, vector.z}; }
-
 /// The count behind a fraction of pixels.
 std::uint64_t pixel_count(const DiffReport& report, double fraction) {
   return static_cast<std::uint64_t>(std::llround(fraction * static_cast<double>(report.metrics.pixels)));
 }
 
 }  // namespace
+
+std::vector<std::string> failures(const DiffReport& report) {
+  std::vector<std::string> sentences = report.verdict.reasons;
+  if (report.baseline) {
+    const auto add = [&](char side, const compare::Verdict& verdict) {
+      for (const std::string& reason : verdict.reasons)
+        sentences.push_back(fmt::format("Since '{}', {} has changed: {}", report.baseline->folder, side, reason));
+    };
+    add('a', report.baseline->a.verdict);
+    add('b', report.baseline->b.verdict);
+  }
+  return sentences;
+}
 
 std::string table(const DiffReport& report) {
   const compare::Metrics& metrics = report.metrics;
@@ -68,6 +80,7 @@ std::string table(const DiffReport& report) {
   line("verdict", compare::name(report.verdict));
   for (const std::string& reason : report.verdict.reasons) line("", reason);
   if (report.examination) text += '\n' + table(*report.examination, report.arbiter);
+  if (report.baseline) text += '\n' + table(*report.baseline);
   return text;
 }
 
@@ -102,17 +115,13 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
   json["device_b"] = to_json(report.b.device);
   json["trace_a"] = pathtracer::name(report.a.trace);
   json["trace_b"] = pathtracer::name(report.b.trace);
-  json["settings"] = to_json(report.job);
-  json["settings"]["camera"] = pathtracer::name_of(pathtracer::camera_names(), report.a.camera.kind);
-  json["settings"]["camera_position"] = vector_json(report.a.camera.position);
-  json["settings"]["camera_target"] = vector_json(report.a.camera.target);
-  json["settings"]["fov"] = report.a.camera.vertical_fov;
-  json["settings"]["background"] = vector_json(report.a.background);
+  json["settings"] = settings_json(report.job, report.a.camera, report.a.background);
   json["thresholds"] = nlohmann::ordered_json::object();
   for (const compare::Rule& rule : report.thresholds.rules)
     if (compare::applies(rule.metric, report.thresholds.tier))
       json["thresholds"][compare::name(rule.metric)] = {{"limit", rule.limit}, {"reason", rule.reason}};
   if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
+  if (report.baseline) json["baseline"] = to_json(*report.baseline);
   json["version"] = TANDEM_VERSION;
   return json;
 }

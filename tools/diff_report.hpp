@@ -3,10 +3,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "compare/examination.hpp"
 #include "compare/metrics.hpp"
 #include "compare/verdict.hpp"
+#include "tools/baseline.hpp"
 #include "tools/job_report.hpp"
 #include "tools/rendering.hpp"
 
@@ -22,7 +24,11 @@ struct DiffReport {
   compare::Verdict verdict;
   std::string arbiter;                              ///< the device that judged; empty: none was asked
   std::optional<compare::Examination> examination;  ///< of the pixels that differ, where an arbiter was asked
+  std::optional<Baseline> baseline;                 ///< where a stored run was given
 };
+
+/// A sentence for each thing that is not as it must be, those of the verdict first. None: the exit code is 0.
+std::vector<std::string> failures(const DiffReport& report);
 
 /// The aligned table for people, with a line break at its end.
 std::string table(const DiffReport& report);

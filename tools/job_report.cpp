@@ -4,6 +4,8 @@
 
 #include <iterator>
 
+#include "pathtracer/scene_hash.hpp"
+
 namespace tandem::tools {
 namespace {
 
@@ -13,10 +15,13 @@ nlohmann::ordered_json optional_json(const std::optional<std::uint32_t>& value) 
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
+nlohmann::ordered_json vector_json(const glm::vec3& vector) { return {vector.x, vector.y, vector.z}; }
+
 }  // namespace
 
 JobSummary summary(const RenderOptions& options, const RenderJob& job) {
   return {.scene = options.scene.string(),
+          .scene_hash = pathtracer::scene_hash(job.scene),
           .triangles = job.scene.triangles.size(),
           .spheres = job.scene.spheres.size(),
           .settings = job.settings,
@@ -59,6 +64,7 @@ std::string settings_text(const JobSummary& job) {
 nlohmann::ordered_json to_json(const JobSummary& job) {
   const pathtracer::RenderSettings& settings = job.settings;
   return {{"scene", job.scene},
+          {"scene_hash", job.scene_hash},
           {"triangles", job.triangles},
           {"spheres", job.spheres},
           {"width", settings.width},
@@ -78,6 +84,21 @@ nlohmann::ordered_json to_json(const JobSummary& job) {
           {"clamp_direct", settings.clamp_direct},
           {"clamp_indirect", settings.clamp_indirect},
           {"occlusion_length", settings.occlusion_length}};
+}
+
+nlohmann::ordered_json settings_json(const JobSummary& job, const pathtracer::Camera& camera,
+                                     const glm::vec3& background) {
+  nlohmann::ordered_json json = to_json(job);
+  json["camera"] = name_of(pathtracer::camera_names(), camera.kind);
+  json["camera_position"] = vector_json(camera.position);
+  json["camera_target"] = vector_json(camera.target);
+  json["camera_up"] = vector_json(camera.up);
+  json["fov"] = camera.vertical_fov;
+  json["view_height"] = camera.height;
+  json["lens_radius"] = camera.lens_radius;
+  json["focus_distance"] = camera.focus_distance;
+  json["background"] = vector_json(background);
+  return json;
 }
 
 }  // namespace tandem::tools

@@ -11,7 +11,8 @@ namespace tandem::tools {
 
 /// What a report says of the scene and how it was rendered.
 struct JobSummary {
-  std::string scene;  ///< the file
+  std::string scene;       ///< the file
+  std::string scene_hash;  ///< of its content, as pathtracer::scene_hash gives it
   std::uint64_t triangles = 0;
   std::uint64_t spheres = 0;
   pathtracer::RenderSettings settings;
@@ -28,5 +29,10 @@ std::string settings_text(const JobSummary& job);
 
 /// All of it, for programs.
 nlohmann::ordered_json to_json(const JobSummary& job);
+
+/// The same, with what a renderer has chosen. Two jobs for which it is the same but for the name of the scene's file
+/// are the same job.
+nlohmann::ordered_json settings_json(const JobSummary& job, const pathtracer::Camera& camera,
+                                     const glm::vec3& background);
 
 }  // namespace tandem::tools
