@@ -153,6 +153,7 @@ std::uint32_t SpirvModule::float_type(std::uint32_t width) {
   if (width == 64) require(spv::CapabilityFloat64);
   return global(spv::OpTypeFloat, {width});
 }
+std::uint32_t SpirvModule::bool_type() { return global(spv::OpTypeBool, {}); }
 std::uint32_t SpirvModule::uint_type() { return global(spv::OpTypeInt, {32, 0}); }
 std::uint32_t SpirvModule::int_type() { return global(spv::OpTypeInt, {32, 1}); }
 
@@ -168,6 +169,12 @@ std::uint32_t SpirvModule::constant(std::int32_t value) {
 std::uint32_t SpirvModule::type_of(std::uint32_t value) const {
   const auto found = types_.find(value);
   return found == types_.end() ? 0 : found->second;
+}
+
+std::uint32_t SpirvModule::column_type(std::uint32_t matrix_type) const {
+  for (const Instruction& instruction : globals_)
+    if (instruction.opcode == spv::OpTypeMatrix && instruction.result() == matrix_type) return instruction.operands[1];
+  refuse("a type that is no matrix has no columns");
 }
 
 bool SpirvModule::has_name(std::uint32_t id, std::string_view name) const {

@@ -42,6 +42,7 @@ class SpirvModule {
 
   /// Ids of types and constants, declared where the module does not have them yet.
   std::uint32_t float_type(std::uint32_t width = 32);
+  std::uint32_t bool_type();
   std::uint32_t uint_type();
   std::uint32_t int_type();
   std::uint32_t constant(float value);
@@ -50,6 +51,8 @@ class SpirvModule {
 
   /// The type of a value, 0 for ids that are none.
   std::uint32_t type_of(std::uint32_t value) const;
+  /// The type of the columns of a matrix type.
+  std::uint32_t column_type(std::uint32_t matrix_type) const;
   bool has_name(std::uint32_t id, std::string_view name) const;  ///< by OpName
   /// The built-in of spv::BuiltIn that a variable is decorated as, or -1.
   int builtin_of(std::uint32_t variable) const;

@@ -1,0 +1,69 @@
+#include "tests/faults/fault.hpp"
+
+#include <iterator>
+
+namespace tandem::test {
+
+const char* name(Finder finder) {
+  switch (finder) {
+    case Finder::nobody:
+      return "nobody";
+    case Finder::picture:
+      return "picture";
+    case Finder::survey:
+      return "survey";
+    case Finder::probes:
+      return "probes";
+  }
+  return "";
+}
+
+Fault& FaultList::append(std::string name, std::string meaning, std::string scene, DeviceEdits edits, Finder finder) {
+  Fault& fault = faults_.emplace_back();
+  fault.name = std::move(name);
+  fault.meaning = std::move(meaning);
+  fault.scene = std::move(scene);
+  fault.form = form_;
+  fault.edits = std::move(edits);
+  fault.finder = finder;
+  return fault;
+}
+
+void FaultList::add(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string event,
+                    std::string field, Finder finder) {
+  Fault& fault = append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), finder);
+  fault.event = std::move(event);
+  fault.field = std::move(field);
+}
+
+void FaultList::add_for_probes(std::string name, std::string meaning, DeviceEdits edits) {
+  append(std::move(name), std::move(meaning), plain_scene, std::move(edits), Finder::probes);
+}
+
+void FaultList::add_for_picture(std::string name, std::string meaning, std::string scene, DeviceEdits edits) {
+  append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), Finder::picture);
+}
+
+void FaultList::add_harmless(std::string name, std::string meaning, std::string scene, DeviceEdits edits,
+                             Finder finder) {
+  append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), finder).harmful = false;
+}
+
+DeviceEdits shader_edits(ShaderEdit edit) {
+  DeviceEdits edits;
+  edits.shader = std::move(edit);
+  return edits;
+}
+
+std::vector<Fault> all_faults() {
+  std::vector<Fault> all = query_faults();
+  const auto append = [&](std::vector<Fault> faults) {
+    all.insert(all.end(), std::make_move_iterator(faults.begin()), std::make_move_iterator(faults.end()));
+  };
+  append(pipeline_faults());
+  append(shading_faults());
+  append(command_faults());
+  return all;
+}
+
+}  // namespace tandem::test

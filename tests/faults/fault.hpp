@@ -1,0 +1,82 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pathtracer/trace_form.hpp"
+#include "tests/faults/device_edits.hpp"
+#include "tests/faults/shader_edits.hpp"
+
+/// Things that a device can do wrong, and what a comparison with one that does not must say of each.
+namespace tandem::test {
+
+/// Which part of a comparison a fault shows in first.
+enum class Finder {
+  nobody,   ///< it changes nothing that anybody asks for
+  picture,  ///< pixels differ
+  survey,   ///< pixels do not, but what the device reports of a path's hits does
+  probes    ///< paths do not either: only rays asked in other ways
+};
+
+/// "nobody", "picture", "survey", "probes".
+const char* name(Finder finder);
+
+struct Fault {
+  std::string name;     ///< a few words with hyphens
+  std::string meaning;  ///< what the device does, in a few words more
+  std::string scene;    ///< a file of scenes/, which the fault shows in
+  pathtracer::TraceForm form = pathtracer::TraceForm::query;
+  DeviceEdits edits;
+
+  // What must be said of it.
+  bool harmful = true;  ///< false: no mismatch
+  Finder finder = Finder::picture;
+  std::string event;  ///< the kind of the first event that differs; empty where no path differs
+  std::string field;  ///< and its field
+};
+
+/// Makes lists of faults.
+class FaultList {
+ public:
+  explicit FaultList(pathtracer::TraceForm form = pathtracer::TraceForm::query) : form_(form) {}
+
+  /// A fault that a path shows at the field of an event.
+  void add(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string event,
+           std::string field, Finder finder = Finder::picture);
+  /// One that only probes show, which do not need a scene.
+  void add_for_probes(std::string name, std::string meaning, DeviceEdits edits);
+  /// One that only the picture shows: every path is recorded as it should be.
+  void add_for_picture(std::string name, std::string meaning, std::string scene, DeviceEdits edits);
+  void add_harmless(std::string name, std::string meaning, std::string scene, DeviceEdits edits, Finder finder);
+
+  std::vector<Fault> take() { return std::move(faults_); }
+
+ private:
+  Fault& append(std::string name, std::string meaning, std::string scene, DeviceEdits edits, Finder finder);
+
+  pathtracer::TraceForm form_;
+  std::vector<Fault> faults_;
+};
+
+/// Scenes of which the path tracer's shaders need different features: the first two none.
+inline constexpr const char* plain_scene = "cornell_box.obj";
+inline constexpr const char* glass_scene = "cornell_spheres.obj";
+inline constexpr const char* transparent_scene = "foliage.obj";
+inline constexpr const char* sphere_scene = "cornell_box_spheres.json";
+
+/// Edits of shaders alone.
+DeviceEdits shader_edits(ShaderEdit edit);
+
+/// Faults of a device's ray queries.
+std::vector<Fault> query_faults();
+/// Faults of the shaders of its ray tracing pipelines.
+std::vector<Fault> pipeline_faults();
+/// Faults of its shader compiler, in the arithmetic of the path tracer.
+std::vector<Fault> shading_faults();
+/// Faults of its buffers, builds and commands.
+std::vector<Fault> command_faults();
+/// All of them.
+std::vector<Fault> all_faults();
+
+}  // namespace tandem::test
