@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "probe_shaders/kernels.hpp"
 #include "rhi_cpu/device.hpp"
 #include "rhi_vulkan/device.hpp"
 #include "shaders/kernels.hpp"
@@ -24,8 +25,10 @@ rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   const std::string_view name = desc.name;
   const std::span<const std::string_view> cpu_names = cpu::device_names();
   if (std::find(cpu_names.begin(), cpu_names.end(), name) != cpu_names.end()) {
-    const std::span<const cpu::PrecompiledKernel> kernels = shaders::kernels();
-    return cpu::create_device(desc, {kernels.begin(), kernels.end()});
+    std::vector<cpu::PrecompiledKernel> kernels;
+    for (const std::span<const cpu::PrecompiledKernel> some : {shaders::kernels(), probe_shaders::kernels()})
+      kernels.insert(kernels.end(), some.begin(), some.end());
+    return cpu::create_device(desc, kernels);
   }
   if (name == "vulkan" || name.starts_with("vulkan:")) return vulkan::create_device(desc);
   std::vector<std::string> names;

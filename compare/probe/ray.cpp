@@ -1,0 +1,78 @@
+#include "compare/probe/ray.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace tandem::compare {
+namespace {
+
+/// The nearest hit that counts.
+std::optional<Encounter> first_of(std::span<const ProbeHit> hits) {
+  std::optional<Encounter> first;
+  for (const ProbeHit& hit : hits)
+    if (hit.counts && (!first || hit.encounter.t_low < first->t_low)) first = hit.encounter;
+  return first;
+}
+
+void cut(ProbeRay& ray, Window window, const Encounter& first) {
+  // Far enough from the hit that rounding cannot move it over the end, and no farther.
+  const double gap = first.t_high - first.t_low;
+  const double before = std::max(first.t_low - gap, 0.0), behind = first.t_high + gap;
+  switch (window) {
+    case Window::whole:
+      break;
+    case Window::from_before:
+      ray.t_min = static_cast<float>(before);
+      break;
+    case Window::from_behind:
+      ray.t_min = std::min(static_cast<float>(behind), ray.t_max);
+      break;
+    case Window::until_before:
+      ray.t_max = static_cast<float>(before);
+      break;
+    case Window::until_behind:
+      ray.t_max = std::min(static_cast<float>(behind), ray.t_max);
+      break;
+  }
+}
+
+}  // namespace
+
+bool is_askable(const pathtracer::TracedRay& ray) {
+  const auto is_finite = [](const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  return is_finite(ray.origin) && is_finite(ray.direction) && ray.direction != glm::vec3(0) && ray.t_max > 0;
+}
+
+std::vector<PathRay> spread_evenly(std::span<const PathRay> rays, std::size_t count) {
+  if (rays.size() <= count) return {rays.begin(), rays.end()};
+  std::vector<PathRay> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(rays[i * rays.size() / count]);
+  return chosen;
+}
+
+std::vector<ProbeRay> rays_of(const Trial& trial, std::span<const PathRay> rays, const ProbeReference& reference,
+                              const pathtracer::Scene& scene) {
+  std::vector<AffineMap> maps;
+  for (const Placement& placement : placements(trial.arrangement, scene)) maps.push_back(map_of(placement.transform));
+  const std::vector<ProbeInstance> instances = reference.instances(trial.arrangement);
+  std::vector<ProbeRay> asked;
+  asked.reserve(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const AffineMap& map = maps[trial.target == each_in_turn ? i % maps.size() : trial.target];
+    const pathtracer::TracedRay& ray = rays[i].ray;
+    ProbeRay& moved = asked.emplace_back(ProbeRay{.origin = glm::vec3(map.point(glm::dvec3(ray.origin))),
+                                                  .t_min = 0,
+                                                  .direction = glm::vec3(map.linear * glm::dvec3(ray.direction)),
+                                                  .t_max = ray.t_max});
+    if (trial.window == Window::whole) continue;
+    if (const std::optional<Encounter> first = first_of(reference.hits(trial, instances, moved)))
+      cut(moved, trial.window, *first);
+  }
+  return asked;
+}
+
+}  // namespace tandem::compare
