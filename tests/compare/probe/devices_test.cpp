@@ -61,7 +61,7 @@ void check_against_reference(rhi::Device& device, const Scene& scene) {
 
 /// What `b` is found to do otherwise than `a`, in every form of either.
 void check_no_mismatch(rhi::Device& a, rhi::Device& b, const Scene& scene) {
-  const std::vector<PathRay> rays = test::rays_through(scene, 1000, 11);
+  const std::vector<PathRay> rays = test::rays_through(scene, 400, 11);
   for (const TraceForm form_a : forms_of(a)) {
     for (const TraceForm form_b : forms_of(b)) {
       CAPTURE(pathtracer::name(form_a));
