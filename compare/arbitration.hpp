@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "pathtracer/path_event.hpp"
 #include "pathtracer/scene.hpp"
 #include "pathtracer/traced_ray.hpp"
 

@@ -35,12 +35,15 @@ Examination examine(pathtracer::Renderer& a, pathtracer::Renderer& b, pathtracer
     ++result.examined_pixels;
     for (std::uint32_t sample = 0; sample < samples; ++sample) paths.push_back({.pixel = pixel, .sample = sample});
   }
-  const std::vector<std::vector<pathtracer::TracedRay>> log_a = a.log_paths(paths), log_b = b.log_paths(paths);
+  std::vector<pathtracer::PathStart> starts;
+  for (const pathtracer::PathId& path : paths) starts.push_back({.path = path});
+  const std::vector<pathtracer::PathEvents> log_a = a.record_paths(starts), log_b = b.record_paths(starts);
   std::vector<Dispute> disputes;
   for (std::size_t first = 0; first < paths.size(); first += samples) {
     bool parted = false;
     for (std::size_t i = first; i < first + samples; ++i) {
-      const PathComparison comparison = compare_paths(paths[i], log_a[i], log_b[i]);
+      const PathComparison comparison =
+          compare_paths(paths[i], pathtracer::rays_of(paths[i], log_a[i]), pathtracer::rays_of(paths[i], log_b[i]));
       result.parted_by_dispute += comparison.parting == Parting::dispute ? 1 : 0;
       result.parted_by_rounding += comparison.parting == Parting::rounding ? 1 : 0;
       result.parted_by_length += comparison.parting == Parting::length ? 1 : 0;

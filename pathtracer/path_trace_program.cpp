@@ -57,16 +57,23 @@ rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoin
 
 /// One ray generation and one miss record, and one hit record for triangles and one for spheres: rays of both kinds
 /// share them.
-rhi::ShaderTableHandle shader_table(rhi::Device& device, const EntryPoint& ray_generation, Features features) {
+rhi::ShaderTableHandle shader_table(rhi::Device& device, PathTraceTask task, Features features) {
+  const EntryPoint ray_generation = ray_generation_shader(task);
+  // Rays that are written down carry more.
+  const bool log = task == PathTraceTask::log;
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
     return device.create_shader_module({spirv, label});
   };
   rhi::RayTracingPipelineDesc desc;
   desc.ray_generation = {module(ray_generation.spirv, ray_generation.label)};
-  desc.miss = {module(shaders::path_trace_rmiss(), "path_trace.rmiss")};
+  desc.miss = {log ? module(shaders::path_log_rmiss(), "path_log.rmiss")
+                   : module(shaders::path_trace_rmiss(), "path_trace.rmiss")};
   rhi::HitGroup group;
-  group.closest_hit = module(shaders::path_trace_rchit(), "path_trace.rchit");
-  if ((features & feature::transparency) != 0) group.any_hit = module(shaders::path_trace_rahit(), "path_trace.rahit");
+  group.closest_hit = log ? module(shaders::path_log_rchit(), "path_log.rchit")
+                          : module(shaders::path_trace_rchit(), "path_trace.rchit");
+  if ((features & feature::transparency) != 0)
+    group.any_hit = log ? module(shaders::path_log_rahit(), "path_log.rahit")
+                        : module(shaders::path_trace_rahit(), "path_trace.rahit");
   desc.hit_groups = {group};
   if ((features & feature::spheres) != 0)
     desc.hit_groups.push_back({.closest_hit = group.closest_hit,
@@ -93,7 +100,7 @@ PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, Features
     compute_ = compute_pipeline(device, compute_shader(task), features_);
     pipeline_ = compute_;
   } else {
-    table_ = shader_table(device, ray_generation_shader(task), features_);
+    table_ = shader_table(device, task, features_);
     pipeline_ = table_->desc().pipeline;
   }
 }

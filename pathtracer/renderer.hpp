@@ -12,6 +12,7 @@
 #include "pathtracer/dispatch_plan.hpp"
 #include "pathtracer/image.hpp"
 #include "pathtracer/image_io.hpp"
+#include "pathtracer/path_event.hpp"
 #include "pathtracer/path_trace_program.hpp"
 #include "pathtracer/render_settings.hpp"
 #include "pathtracer/scene.hpp"
@@ -71,8 +72,11 @@ class Renderer {
   /// material, 2^32 - 1 for none. Changes nothing. @param samples at least 1
   std::vector<ImageChannel> first_hits(std::uint32_t samples);
 
-  /// The rays that each path traces under the settings, in order, with the answers of this device. Changes nothing.
-  std::vector<std::vector<TracedRay>> log_paths(std::span<const PathId> paths);
+  /// What becomes of each path under the settings on this device. Changes nothing.
+  std::vector<PathSummary> summarize_paths(std::span<const PathStart> starts);
+  /// The events of each path, all of them, in order. Changes nothing. 128 bytes each: ask for no more paths than memory
+  /// holds.
+  std::vector<PathEvents> record_paths(std::span<const PathStart> starts);
   /// This device's answers to rays that it may not have traced itself.
   std::vector<std::uint32_t> answer(std::span<const TracedRay> rays);
 
@@ -80,6 +84,9 @@ class Renderer {
   /// Runs a task over buffers that are bound from binding 2 of set 1 on, one submission for each dispatch.
   void run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers,
                 std::span<const DispatchConstants> dispatches);
+  /// Records paths that fit into one submission, of each as many events as `capacities` says, one after the other.
+  std::vector<PathSummary> record(std::span<const PathStart> starts, std::span<const std::uint32_t> capacities,
+                                  PathEvents& events);
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 /// Rays of the path tracer, one by one: TracedRay of shaders/trace/traced_ray.glsl, byte for byte (std430).
@@ -32,11 +31,5 @@ struct TracedRay {
   std::uint32_t random_dimension = 0;
 };
 static_assert(sizeof(TracedRay) == 48 && offsetof(TracedRay, answer) == 32);
-
-/// Which path: one sample of one pixel.
-struct PathId {
-  glm::uvec2 pixel{0};
-  std::uint32_t sample = 0;
-};
 
 }  // namespace tandem::pathtracer

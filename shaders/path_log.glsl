@@ -1,27 +1,23 @@
-// What an invocation does that writes down the rays of one path. Of the dispatch constants, tile_size.x is the number of
-// paths, and sample_count the number of rays that the log has room for of each.
+// What an invocation does that writes down the events of one path. Of the dispatch constants, tile_size.x is the number
+// of paths.
 
 #ifndef TANDEM_PATH_LOG
 #define TANDEM_PATH_LOG
 
-#define TANDEM_RAY_LOG
+#define TANDEM_EVENTS
 #include "integrator/path.glsl"
 #include "scene.glsl"
 
-struct PathId {
-  uvec2 pixel;
-  uint sample_index;
-  uint ray_count;  // written: of the path
-};
-
-layout(set = 1, binding = 3, std430) buffer PathIds { PathId path_ids[]; };
-
 void path_log(uint index) {
   if (index >= dispatch.tile_size.x) return;
-  ray_log_end = index * dispatch.sample_count;
+  recorded_path = index;
   uint ray_count = 0;
-  path_radiance(path_ids[index].pixel, path_ids[index].sample_index, ray_count);
-  path_ids[index].ray_count = ray_count;
+  precise vec3 radiance = path_radiance(path_starts[index].pixel, path_starts[index].sample_index, ray_count);
+  flush_events();
+  path_summaries[index].radiance = radiance;
+  path_summaries[index].ray_count = ray_count;
+  path_summaries[index].event_count = event_count;
+  path_summaries[index].digest = event_digest;
 }
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "camera/camera.glsl"
 #include "integrator/direct_light.glsl"
+#include "integrator/events.glsl"
 #include "integrator/mis.glsl"
 #include "integrator/options.glsl"
 #include "integrator/vertex.glsl"
@@ -76,13 +77,40 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
 
   // Boundaries of media end a segment, but add nothing to the depth.
   uint crossings = 0;
-  for (uint depth = 0; depth < max_depth; ++depth) {
+  TANDEM_RECORD(if (resumes_path()) {
+    resumed_depth = state_word(2);
+    crossings = state_word(3);
+    origin = state_vector(4);
+    scatterer.density = state_number(7);
+    direction = state_vector(8);
+    squeezing = state_number(11);
+    throughput = state_vector(12);
+    medium = state_word(15);
+    radiance = state_vector(16);
+    ray_length = state_number(19);
+    scatterer.position = state_vector(20);
+    scattering_count.diffuse = state_word(23);
+    scattering_count.glossy = state_word(24);
+    scattering_count.specular = state_word(25);
+  } else event_camera(pixel, sample_index, time, origin, direction);)
+  TANDEM_RECORD(uint end_reason = END_DEPTH;)
+  for (uint depth = PATH_FIRST_DEPTH; depth < max_depth; ++depth) {
     uint segment = depth + crossings;
+    TANDEM_RECORD(end_reason = END_LIMIT;)
+    TANDEM_RECORD(if (!event_segment(depth, crossings, origin, direction, ray_length, throughput, radiance, squeezing,
+                                     medium, scatterer.position, scatterer.density, scattering_count.diffuse,
+                                     scattering_count.glossy, scattering_count.specular)) break;)
+    TANDEM_RECORD(end_reason = END_DEPTH;)
     ray_count += 1;
     uint primitive = trace_closest(origin, direction, ray_length, key, segment_dimension(segment));
     precise Vertex vertex;
     vertex.in_medium = false;
     if (primitive != NO_PRIMITIVE) vertex.surface = surface_at(primitive, origin, direction, time);
+    TANDEM_RECORD(if (primitive != NO_PRIMITIVE) event_surface(vertex.surface.material, vertex.surface.outside,
+                                                               vertex.surface.position, vertex.surface.offset,
+                                                               vertex.surface.geometric_normal,
+                                                               vertex.surface.shading_normal,
+                                                               vertex.surface.texture_coordinates);)
 
     if (FEATURE_MEDIA && medium != NO_MEDIUM && !occlusion) {
       precise float surface_distance = RAY_LENGTH;
@@ -90,7 +118,10 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
       uvec2 medium_bits = sampler_bits(key, medium_dimension(segment)).xy;
       precise MediumSample reached = sample_medium(medium, throughput, surface_distance, medium_bits);
       throughput = drop_negligible(throughput * reached.weight);
+      TANDEM_RECORD(event_medium(medium_bits, reached.scattered, reached.distance, reached.weight);)
+      TANDEM_RECORD(end_reason = END_ABSORBED;)
       if (max_component(throughput) == 0.0) break;
+      TANDEM_RECORD(end_reason = END_DEPTH;)
       if (reached.scattered) {
         vertex.in_medium = true;
         primitive = NO_PRIMITIVE;
@@ -105,22 +136,31 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
 
     if (!vertex.in_medium) {
       if (primitive == NO_PRIMITIVE) {
+        TANDEM_RECORD(end_reason = END_ESCAPED;)
+        TANDEM_RECORD(if (occlusion) event_end(end_reason, throughput, ray_count);)
         if (occlusion) return throughput;
-        radiance += clamped(throughput * weighted_environment(scatterer, direction), depth + 1);
+        precise vec3 surroundings = weighted_environment(scatterer, direction);
+        precise vec3 contribution = clamped(throughput * surroundings, depth + 1);
+        radiance += contribution;
+        TANDEM_RECORD(event_emission(true, surroundings, contribution);)
         break;
       }
       if (is_boundary(vertex.surface.material)) {
         medium = medium_beyond(vertex.surface.material, vertex.surface.outside);
         origin = offset_point(vertex.surface.position, vertex.surface.geometric_normal, vertex.surface.offset, direction);
+        TANDEM_RECORD(end_reason = END_CROSSINGS;)
         if (crossings == MAX_CROSSINGS) break;
         crossings += 1;
         depth -= 1;  // 0 - 1 + 1 is 0
         continue;
       }
+      TANDEM_RECORD(if (occlusion && depth == 1) event_end(END_OCCLUDED, vec3(0.0), ray_count);)
       if (occlusion && depth == 1) return vec3(0.0);
       if (!occlusion) {
         precise vec3 emission = weighted_emission(vertex.surface, primitive, scatterer, direction, time);
-        radiance += clamped(throughput * emission, depth + 1);
+        precise vec3 contribution = clamped(throughput * emission, depth + 1);
+        radiance += contribution;
+        TANDEM_RECORD(event_emission(false, emission, contribution);)
       }
     }
     if (depth + 1 == max_depth || exceeds_depths(scattering_count)) break;
@@ -142,7 +182,9 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     bool estimates_lights = vertex.has_density && samples_lights() && !occlusion;
     if (estimates_lights) {
       precise vec3 light = direct_light(vertex, medium, time, key, segment, ray_count);
-      radiance += clamped(throughput * light, depth + 2);
+      precise vec3 contribution = clamped(throughput * light, depth + 2);
+      radiance += contribution;
+      TANDEM_RECORD(event_direct_light(contribution);)
     }
 
     uvec4 bits = sampler_bits(key, scattering_dimension(segment));
@@ -160,14 +202,20 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
       vertex.frame = make_frame(vertex.surface.geometric_normal);
       vertex.wo = to_local(vertex.frame, -direction);
     }
+    TANDEM_RECORD(event_scatter(bits, vertex.in_medium ? NO_MATERIAL_MODEL : vertex.parameters.model, scattered.lobe,
+                                leaves, next_direction, scattered.weight, scattered.density, scattered.eta);)
+    TANDEM_RECORD(end_reason = END_SIDE;)
     if (!leaves) break;
 
     throughput = drop_negligible(throughput * scattered.weight);
+    TANDEM_RECORD(end_reason = END_ABSORBED;)
     if (max_component(throughput) == 0.0) break;
     squeezing *= scattered.eta * scattered.eta;
     if (depth >= ROULETTE_DEPTH && option_roulette()) {
       precise float survival = max_component(throughput) * squeezing;
       survival = survival < ROULETTE_SURVIVAL ? survival : ROULETTE_SURVIVAL;
+      TANDEM_RECORD(event_roulette(bits.w, survival, unit_interval(bits.w) < survival);)
+      TANDEM_RECORD(end_reason = END_ROULETTE;)
       if (unit_interval(bits.w) >= survival) break;
       throughput *= det_div(1.0, survival);
     }
@@ -178,7 +226,9 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     origin = offset_point(vertex.surface.position, vertex.surface.geometric_normal, vertex.surface.offset,
                           next_direction);
     direction = next_direction;
+    TANDEM_RECORD(end_reason = END_DEPTH;)
   }
+  TANDEM_RECORD(event_end(end_reason, radiance, ray_count);)
   return radiance;
 }
 

@@ -11,6 +11,10 @@
 #include "trace/ray_time.glsl"
 
 layout(location = 0) rayPayloadEXT RayPayload ray_payload;
+#ifdef TANDEM_EVENTS
+// By the last call of closest_primitive.
+ReportedHit reported_hit;
+#endif
 
 const uint OPACITY_FLAGS = FEATURE_TRANSPARENCY ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
 
@@ -21,6 +25,10 @@ uint closest_primitive(vec3 origin, vec3 direction, float t_max, RandomKey key, 
   ray_payload.primitive = NO_PRIMITIVE;
   if (FEATURE_TRANSPARENCY) ray_payload.random = random_bits(key, dimension).x;
   traceRayEXT(scene_tlas, OPACITY_FLAGS, 0xff, 0, 0, 0, origin, ray_t_min(key), direction, t_max, 0);
+#ifdef TANDEM_EVENTS
+  reported_hit = no_reported_hit();
+  if (ray_payload.primitive != NO_PRIMITIVE) reported_hit = ray_payload.hit;
+#endif
   return ray_payload.primitive;
 }
 

@@ -8,6 +8,12 @@
 #include "geometry/sphere_hit.glsl"
 #include "random.glsl"
 #include "trace/primitive_index.glsl"
+#ifdef TANDEM_EVENTS
+#include "trace/reported_hit.glsl"
+
+// By the last call of closest_primitive.
+ReportedHit reported_hit;
+#endif
 
 const uint OPACITY_FLAGS = FEATURE_TRANSPARENCY ? gl_RayFlagsNoneEXT : gl_RayFlagsOpaqueEXT;
 
@@ -38,7 +44,21 @@ uint closest_primitive(vec3 origin, vec3 direction, float t_max, RandomKey key, 
   rayQueryEXT query;
   rayQueryInitializeEXT(query, scene_tlas, OPACITY_FLAGS, 0xff, origin, 0.0, direction, t_max);
   TANDEM_PROCEED(query)
+#ifdef TANDEM_EVENTS
+  reported_hit = no_reported_hit();
+#endif
   if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) return NO_PRIMITIVE;
+#ifdef TANDEM_EVENTS
+  reported_hit.instance_custom_index = uint(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true));
+  reported_hit.geometry_index = uint(rayQueryGetIntersectionGeometryIndexEXT(query, true));
+  reported_hit.primitive_index = uint(rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
+  reported_hit.t = rayQueryGetIntersectionTEXT(query, true);
+  reported_hit.kind = HIT_PROCEDURAL;
+  if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT) {
+    reported_hit.kind = rayQueryGetIntersectionFrontFaceEXT(query, true) ? HIT_FRONT : HIT_BACK;
+    reported_hit.barycentrics = rayQueryGetIntersectionBarycentricsEXT(query, true);
+  }
+#endif
   return primitive_index(rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
                          rayQueryGetIntersectionGeometryIndexEXT(query, true),
                          rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
