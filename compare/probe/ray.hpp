@@ -7,7 +7,7 @@
 #include "compare/probe/reference.hpp"
 #include "compare/probe/trial.hpp"
 #include "pathtracer/scene.hpp"
-#include "pathtracer/traced_ray.hpp"
+#include "pathtracer/path_event.hpp"
 
 namespace tandem::compare {
 
