@@ -26,6 +26,12 @@ DeviceEdits instances(std::function<void(rhi::InstanceDesc&)> edit) {
   return edits;
 }
 
+DeviceEdits instances_without(rhi::InstanceFlags flag) {
+  return instances([flag](rhi::InstanceDesc& instance) {
+    instance.flags = instance.flags & ~static_cast<std::uint32_t>(flag) & 0xffu;
+  });
+}
+
 /// Of all geometries of triangles in a bottom level.
 DeviceEdits triangles(std::function<void(rhi::TriangleGeometry&)> edit) {
   DeviceEdits edits;
@@ -53,10 +59,6 @@ bool is_mirrored(const rhi::InstanceDesc& instance) {
          0;
 }
 
-void toggle(rhi::InstanceDesc& instance, rhi::InstanceFlags flag) {
-  instance.flags = (instance.flags ^ static_cast<std::uint32_t>(flag)) & 0xffu;
-}
-
 void shrink(std::array<float, 6>& box) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float margin = 0.1f * (box[axis + 3] - box[axis]);
@@ -74,50 +76,60 @@ void lose_last_block(const rhi::Buffer&, std::vector<std::byte>& bytes) {
 
 void add_structure_faults(FaultList& faults) {
   faults.add("positions-in-half-precision", "structures keep 11 bits of a position", plain_scene,
-             vertices(in_half_precision), "ray", "answer");
+             vertices(in_half_precision), "ray", {"answer"});
   faults.add("indices-of-16-bits", "indices are read as 16 bits each", plain_scene,
              triangles([](rhi::TriangleGeometry& geometry) { geometry.index_format = rhi::IndexFormat::uint16; }),
-             "ray", "answer");
+             "ray", {"answer"});
   faults.add("last-triangle-lost", "a geometry is built without its last triangle", plain_scene,
              triangles([](rhi::TriangleGeometry& geometry) { geometry.triangle_count -= geometry.triangle_count > 0; }),
-             "ray", "answer");
+             "ray", {"answer"});
   faults.add("opaque-forced", "every triangle counts as opaque", transparent_scene,
              triangles([](rhi::TriangleGeometry& geometry) { geometry.flags |= rhi::GeometryFlags::opaque; }), "ray",
-             "answer");
+             {"answer"});
   DeviceEdits boxes;
   boxes.box = shrink;
-  faults.add("boxes-too-small", "boxes lose a tenth of their size on each side", sphere_scene, boxes, "ray", "answer");
+  faults.add("boxes-too-small", "boxes lose a tenth of their size on each side", sphere_scene, boxes, "ray",
+             {"answer"});
   faults.add("custom-index-not-stored", "instances are built with the custom index 0", sphere_scene,
-             instances([](rhi::InstanceDesc& instance) { instance.custom_index = 0; }), "ray", "answer");
+             instances([](rhi::InstanceDesc& instance) { instance.custom_index = 0; }), "ray", {"answer"});
   DeviceEdits count;
   count.instance_count = [](std::uint32_t& instance_count) { instance_count -= instance_count > 0; };
   faults.add("last-instance-lost", "a top level is built without its last instance", sphere_scene, count, "ray",
-             "answer");
+             {"answer"});
 
   DeviceEdits bottom_updates, top_updates;
   bottom_updates.skips_bottom_level_updates = true;
   top_updates.skips_top_level_updates = true;
-  faults.add_for_probes("refit-skipped", "updates of a bottom level leave it as it was built", bottom_updates);
-  faults.add_for_probes("instance-update-skipped", "updates of a top level leave it as it was built", top_updates);
-  faults.add_for_probes("instance-transposed", "an instance's rotation is transposed",
+  faults.add_for_probes("refit-skipped", "updates of a bottom level leave it as it was built", plain_scene,
+                        bottom_updates, "refitted bottom level", "type");
+  faults.add_for_probes("instance-update-skipped", "updates of a top level leave it as it was built", plain_scene,
+                        top_updates, "moved top level", "type");
+  faults.add_for_probes("instance-transposed", "an instance's rotation is transposed", plain_scene,
                         instances([](rhi::InstanceDesc& instance) {
                           for (int row = 0; row < 3; ++row)
                             for (int column = 0; column < row; ++column)
                               std::swap(instance.object_to_world[row][column], instance.object_to_world[column][row]);
-                        }));
-  faults.add_for_probes("mirrored-winding", "a mirrored instance turns its triangles round",
+                        }),
+                        "turned instance", "type");
+  faults.add_for_probes("mirrored-winding", "a mirrored instance turns its triangles round", plain_scene,
                         instances([](rhi::InstanceDesc& instance) {
-                          if (is_mirrored(instance)) toggle(instance, rhi::InstanceFlags::triangle_flip_facing);
-                        }));
-  faults.add_for_probes("instance-mask-forced", "every instance has the mask 0xff",
-                        instances([](rhi::InstanceDesc& instance) { instance.mask = 0xff; }));
-  faults.add_for_probes("instance-cull-disable-lost", "instances cannot switch culling off",
-                        instances([](rhi::InstanceDesc& instance) {
-                          const auto disable = std::uint32_t(rhi::InstanceFlags::triangle_facing_cull_disable);
-                          instance.flags = instance.flags & ~disable & 0xffu;
-                        }));
-  faults.add_for_probes("geometry-transform-ignored", "a geometry's matrix is not applied",
-                        triangles([](rhi::TriangleGeometry& geometry) { geometry.transform = {}; }));
+                          if (is_mirrored(instance))
+                            instance.flags =
+                                (instance.flags ^ std::uint32_t(rhi::InstanceFlags::triangle_flip_facing)) & 0xffu;
+                        }),
+                        "mirrored instance", "hit kind");
+  faults.add_for_probes("instance-mask-forced", "every instance has the mask 0xff", plain_scene,
+                        instances([](rhi::InstanceDesc& instance) { instance.mask = 0xff; }), "instance mask", "type");
+  faults.add_for_probes("cull-disable-lost", "instances cannot switch culling off", transparent_scene,
+                        instances_without(rhi::InstanceFlags::triangle_facing_cull_disable), "culling disabled",
+                        "type");
+  faults.add_for_probes("flip-facing-lost", "instances cannot turn their triangles round", plain_scene,
+                        instances_without(rhi::InstanceFlags::triangle_flip_facing), "flipped facing", "type");
+  faults.add_for_probes("force-opaque-lost", "instances cannot make their triangles opaque", transparent_scene,
+                        instances_without(rhi::InstanceFlags::force_opaque), "forced opaque", "type");
+  faults.add_for_probes("geometry-transform-ignored", "a geometry's matrix is not applied", plain_scene,
+                        triangles([](rhi::TriangleGeometry& geometry) { geometry.transform = {}; }),
+                        "transform at build", "type");
   faults.add_harmless("positions-off", "structures keep positions up to 16 floats off", glass_scene,
                       vertices(slightly_off), Finder::picture);
 }
@@ -139,11 +151,11 @@ void add_dispatch_faults(FaultList& faults) {
   DeviceEdits upload;
   upload.upload = lose_last_block;
   faults.add("upload-cut", "the end of an upload is lost where it does not fill 64 bytes", plain_scene, upload,
-             "surface", "material");
+             "surface", {"material"});
   DeviceEdits specialization;
   specialization.specialization = [](std::vector<rhi::SpecializationValue>& values) { values.clear(); };
   faults.add("specialisation-ignored", "specialisation constants keep their defaults", transparent_scene,
-             specialization, "ray", "answer");
+             specialization, "ray", {"answer"});
 }
 
 }  // namespace

@@ -30,14 +30,25 @@ Fault& FaultList::append(std::string name, std::string meaning, std::string scen
 }
 
 void FaultList::add(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string event,
-                    std::string field, Finder finder) {
-  Fault& fault = append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), finder);
+                    std::vector<std::string> fields, std::uint32_t segment) {
+  Fault& fault = append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), Finder::picture);
   fault.event = std::move(event);
-  fault.field = std::move(field);
+  fault.fields = std::move(fields);
+  fault.segment = segment;
 }
 
-void FaultList::add_for_probes(std::string name, std::string meaning, DeviceEdits edits) {
-  append(std::move(name), std::move(meaning), plain_scene, std::move(edits), Finder::probes);
+void FaultList::add_for_survey(std::string name, std::string meaning, std::string scene, DeviceEdits edits,
+                               std::string field) {
+  Fault& fault = append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), Finder::survey);
+  fault.event = "ray";
+  fault.fields = {std::move(field)};
+}
+
+void FaultList::add_for_probes(std::string name, std::string meaning, std::string scene, DeviceEdits edits,
+                               std::string trial, std::string field) {
+  Fault& fault = append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), Finder::probes);
+  fault.event = std::move(trial);
+  fault.fields = {std::move(field)};
 }
 
 void FaultList::add_for_picture(std::string name, std::string meaning, std::string scene, DeviceEdits edits) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,8 +33,9 @@ struct Fault {
   // What must be said of it.
   bool harmful = true;  ///< false: no mismatch
   Finder finder = Finder::picture;
-  std::string event;  ///< the kind of the first event that differs; empty where no path differs
-  std::string field;  ///< and its field
+  std::string event;  ///< the kind of the event where most paths part, or the trial; empty where neither differs
+  std::vector<std::string> fields;  ///< of the event or the answer: one of these
+  std::uint32_t segment = 0;        ///< the first segment of a path on which the fault can act
 };
 
 /// Makes lists of faults.
@@ -41,11 +43,14 @@ class FaultList {
  public:
   explicit FaultList(pathtracer::TraceForm form = pathtracer::TraceForm::query) : form_(form) {}
 
-  /// A fault that a path shows at the field of an event.
+  /// A fault that a path shows at a field of an event.
   void add(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string event,
-           std::string field, Finder finder = Finder::picture);
-  /// One that only probes show, which do not need a scene.
-  void add_for_probes(std::string name, std::string meaning, DeviceEdits edits);
+           std::vector<std::string> fields, std::uint32_t segment = 0);
+  /// One that shows in what a device reports of a ray's hit, and in nothing that comes of it.
+  void add_for_survey(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string field);
+  /// One that only probes show, and this trial first.
+  void add_for_probes(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string trial,
+                      std::string field);
   /// One that only the picture shows: every path is recorded as it should be.
   void add_for_picture(std::string name, std::string meaning, std::string scene, DeviceEdits edits);
   void add_harmless(std::string name, std::string meaning, std::string scene, DeviceEdits edits, Finder finder);

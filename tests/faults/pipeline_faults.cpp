@@ -23,24 +23,24 @@ std::vector<Fault> pipeline_faults() {
   using rhi::ShaderStage;
   FaultList faults(pathtracer::TraceForm::pipeline);
   faults.add("ignore-intersection-ignored", "ignoreIntersectionEXT does nothing", transparent_scene,
-             in_stage(ShaderStage::any_hit, without(spv::OpIgnoreIntersectionKHR, spv::OpReturn)), "ray", "answer");
+             in_stage(ShaderStage::any_hit, without(spv::OpIgnoreIntersectionKHR, spv::OpReturn)), "ray", {"answer"});
   faults.add("any-hit-sees-first-geometry", "gl_GeometryIndexEXT is 0 in any-hit shaders", transparent_scene,
-             in_stage(ShaderStage::any_hit, edited_builtin(spv::BuiltInRayGeometryIndexKHR, zero)), "ray", "answer");
+             in_stage(ShaderStage::any_hit, edited_builtin(spv::BuiltInRayGeometryIndexKHR, zero)), "ray", {"answer"});
   faults.add("closest-hit-sees-first-geometry", "gl_GeometryIndexEXT is 0 in closest-hit shaders", transparent_scene,
              in_stage(ShaderStage::closest_hit, edited_builtin(spv::BuiltInRayGeometryIndexKHR, zero)), "ray",
-             "answer");
+             {"answer"});
   faults.add("closest-hit-sees-first-primitive", "gl_PrimitiveID is 0 in closest-hit shaders", plain_scene,
-             in_stage(ShaderStage::closest_hit, edited_builtin(spv::BuiltInPrimitiveId, zero)), "ray", "answer");
+             in_stage(ShaderStage::closest_hit, edited_builtin(spv::BuiltInPrimitiveId, zero)), "ray", {"answer"});
   faults.add("closest-hit-sees-first-instance", "gl_InstanceCustomIndexEXT is 0 in closest-hit shaders", sphere_scene,
              in_stage(ShaderStage::closest_hit, edited_builtin(spv::BuiltInInstanceCustomIndexKHR, zero)), "ray",
-             "answer");
+             {"answer"});
   faults.add("reported-t-doubled", "a hit is twice as far away as reportIntersectionEXT said", sphere_scene,
              in_stage(ShaderStage::intersection,
                       edited_operand(spv::OpReportIntersectionKHR, 2,
                                      [](CodeWriter& code, std::uint32_t t) { return scaled(code, t, 2.0f); })),
-             "ray", "answer");
+             "ray", {"answer"});
   faults.add("miss-shader-not-run", "rays that meet nothing run no shader", plain_scene,
-             in_stage(ShaderStage::miss, without(spv::OpStore)), "ray", "answer");
+             in_stage(ShaderStage::miss, without(spv::OpStore)), "ray", {"answer"});
   return faults.take();
 }
 

@@ -47,6 +47,11 @@ std::uint32_t inverted_cull(CodeWriter& code, std::uint32_t flags) {
   return code.value(spv::OpSelect, uints, {none, flags, inverted});
 }
 
+DeviceEdits without_flags(std::uint32_t bits) {
+  return operand(flags_operand,
+                 [bits](CodeWriter& code, std::uint32_t flags) { return without_bits(code, flags, bits); });
+}
+
 std::vector<std::uint32_t> components(CodeWriter& code, std::uint32_t vector, std::uint32_t count) {
   std::vector<std::uint32_t> values;
   for (std::uint32_t i = 0; i < count; ++i)
@@ -119,32 +124,32 @@ std::vector<Fault> query_faults() {
   // Which primitive a ray meets.
   faults.add("t-max-ignored", "a ray goes on behind its t_max", plain_scene,
              operand(t_max_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(1e30f); }),
-             "ray", "answer");
+             "ray", {"answer"});
   faults.add("shadow-rays-short", "rays that may stop at any hit end half way", plain_scene,
              shader_edits(edited_operand("is_occluded", spv::OpRayQueryInitializeKHR, t_max_operand,
                                          [](CodeWriter& code, std::uint32_t t) { return scaled(code, t, 0.5f); })),
-             "ray", "answer");
+             "ray", {"answer"});
   faults.add("primitive-off-by-one", "the index of a primitive is one less", plain_scene,
-             results(spv::OpRayQueryGetIntersectionPrimitiveIndexKHR, one_less), "ray", "answer");
+             results(spv::OpRayQueryGetIntersectionPrimitiveIndexKHR, one_less), "ray", {"answer"});
   faults.add("primitive-off-by-one-in-later-geometries", "the same, but not in the first geometry of a bottom level",
-             transparent_scene, shader_edits(off_by_one_in_later_geometries()), "ray", "answer");
+             transparent_scene, shader_edits(off_by_one_in_later_geometries()), "ray", {"answer"});
   faults.add("geometry-always-first", "the index of a geometry is always 0", transparent_scene,
-             always_zero(spv::OpRayQueryGetIntersectionGeometryIndexKHR), "ray", "answer");
+             always_zero(spv::OpRayQueryGetIntersectionGeometryIndexKHR), "ray", {"answer"});
   faults.add("confirm-ignored", "rayQueryConfirmIntersectionEXT does nothing", transparent_scene,
-             shader_edits(without(spv::OpRayQueryConfirmIntersectionKHR)), "ray", "answer");
+             shader_edits(without(spv::OpRayQueryConfirmIntersectionKHR)), "ray", {"answer"});
   faults.add("generate-ignored", "rayQueryGenerateIntersectionEXT does nothing", sphere_scene,
-             shader_edits(without(spv::OpRayQueryGenerateIntersectionKHR)), "ray", "answer");
+             shader_edits(without(spv::OpRayQueryGenerateIntersectionKHR)), "ray", {"answer"});
 
   // What is reported of a hit.
-  faults.add("barycentrics-swapped", "the two barycentric coordinates change places", plain_scene,
-             results(spv::OpRayQueryGetIntersectionBarycentricsKHR, swapped), "ray", "barycentrics", Finder::survey);
-  faults.add("barycentrics-of-other-vertices", "they are those of the first and the second vertex", plain_scene,
-             results(spv::OpRayQueryGetIntersectionBarycentricsKHR, of_other_vertices), "ray", "barycentrics",
-             Finder::survey);
-  faults.add("t-doubled", "the t of a hit is reported in half the ray's units", plain_scene,
-             results(spv::OpRayQueryGetIntersectionTKHR,
-                     [](CodeWriter& code, std::uint32_t t) { return scaled(code, t, 2.0f); }),
-             "ray", "t", Finder::survey);
+  faults.add_for_survey("barycentrics-swapped", "the two barycentric coordinates change places", plain_scene,
+                        results(spv::OpRayQueryGetIntersectionBarycentricsKHR, swapped), "barycentrics");
+  faults.add_for_survey("barycentrics-of-other-vertices", "they are those of the first and the second vertex",
+                        plain_scene, results(spv::OpRayQueryGetIntersectionBarycentricsKHR, of_other_vertices),
+                        "barycentrics");
+  faults.add_for_survey("t-doubled", "the t of a hit is reported in half the ray's units", plain_scene,
+                        results(spv::OpRayQueryGetIntersectionTKHR,
+                                [](CodeWriter& code, std::uint32_t t) { return scaled(code, t, 2.0f); }),
+                        "t");
   faults.add_harmless("t-noise", "the t of a hit is reported one float too large", plain_scene,
                       results(spv::OpRayQueryGetIntersectionTKHR,
                               [](CodeWriter& code, std::uint32_t t) { return moved_by_ulp(code, t, 1); }),
@@ -152,33 +157,37 @@ std::vector<Fault> query_faults() {
   faults.add_harmless("barycentrics-noise", "barycentric coordinates are reported one float off", plain_scene,
                       results(spv::OpRayQueryGetIntersectionBarycentricsKHR, noisy_barycentrics), Finder::survey);
 
+  faults.add_for_survey("front-face-inverted", "the front face is reported as the back face", plain_scene,
+                        results(spv::OpRayQueryGetIntersectionFrontFaceKHR,
+                                [](CodeWriter& code, std::uint32_t front) {
+                                  return code.value(spv::OpLogicalNot, code.module().bool_type(), {front});
+                                }),
+                        "hit kind");
+
   // What no path asks for.
   faults.add_for_probes(
-      "t-min-ignored", "a ray begins at its origin",
-      operand(t_min_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0.0f); }));
+      "t-min-ignored", "a ray begins at its origin", plain_scene,
+      operand(t_min_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0.0f); }),
+      "from behind the hit", "type");
   faults.add_for_probes(
-      "mask-ignored", "a ray meets instances that its mask leaves out",
-      operand(mask_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0xffu); }));
+      "mask-ignored", "a ray meets instances that its mask leaves out", plain_scene,
+      operand(mask_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0xffu); }),
+      "instance mask", "type");
   faults.add_for_probes("cull-flags-inverted", "front faces are culled for back faces and the other way round",
-                        operand(flags_operand, inverted_cull));
-  faults.add_for_probes("cull-flags-ignored", "no face is culled",
-                        operand(flags_operand, [](CodeWriter& code, std::uint32_t flags) {
-                          return without_bits(code, flags, cull_facing);
-                        }));
-  faults.add_for_probes("opacity-cull-ignored", "neither opaque nor other triangles are culled",
-                        operand(flags_operand, [](CodeWriter& code, std::uint32_t flags) {
-                          return without_bits(code, flags, cull_opacity);
-                        }));
-  faults.add_for_probes("front-face-inverted", "the front face is reported as the back face",
-                        results(spv::OpRayQueryGetIntersectionFrontFaceKHR, [](CodeWriter& code, std::uint32_t front) {
-                          return code.value(spv::OpLogicalNot, code.module().bool_type(), {front});
-                        }));
-  faults.add_for_probes("object-to-world-transposed", "an instance's rotation is reported transposed",
-                        results(spv::OpRayQueryGetIntersectionObjectToWorldKHR, transposed));
-  faults.add_harmless(
-      "first-hit-flag-ignored", "rays that may stop at any hit look for the closest", plain_scene,
-      operand(flags_operand, [](CodeWriter& code, std::uint32_t flags) { return without_bits(code, flags, 4); }),
-      Finder::nobody);
+                        plain_scene, operand(flags_operand, inverted_cull), "back faces culled", "type");
+  faults.add_for_probes("cull-flags-ignored", "no face is culled", plain_scene, without_flags(cull_facing),
+                        "front faces culled", "type");
+  faults.add_for_probes("opacity-cull-ignored", "neither opaque nor other triangles are culled", plain_scene,
+                        without_flags(cull_opacity), "opaque culled", "type");
+  faults.add_for_probes("opaque-flag-ignored", "a ray's flag that all is opaque does nothing", plain_scene,
+                        without_flags(1), "all opaque", "type");
+  faults.add_for_probes("skip-triangles-ignored", "a ray's flag that skips triangles does nothing", plain_scene,
+                        without_flags(0x100), "triangles skipped", "type");
+  faults.add_for_probes("object-to-world-transposed", "an instance's rotation is reported transposed", plain_scene,
+                        results(spv::OpRayQueryGetIntersectionObjectToWorldKHR, transposed), "turned instance",
+                        "object to world (0, 1)");
+  faults.add_harmless("first-hit-flag-ignored", "rays that may stop at any hit look for the closest", plain_scene,
+                      without_flags(4), Finder::nobody);
   return faults.take();
 }
 

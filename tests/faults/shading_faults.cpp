@@ -90,25 +90,26 @@ std::vector<Fault> shading_faults() {
   faults.add("random-numbers-halved", "random numbers are in [0, 1/2)", plain_scene,
              shader_edits(edited_returns("unit_interval",
                                          [](CodeWriter& code, std::uint32_t u) { return scaled(code, u, 0.5f); })),
-             "camera", "direction");
+             "camera", {"direction"});
   faults.add("hash-without-shift", "the hash of random numbers leaves out its shift", plain_scene,
-             shader_edits(edited_results("pcg4d", spv::OpShiftRightLogical, lost)), "camera", "direction");
+             shader_edits(edited_results("pcg4d", spv::OpShiftRightLogical, lost)), "camera", {"direction"});
   faults.add("roulette-uncompensated", "paths that survive roulette count no more for it", plain_scene,
-             shader_edits(edited_calls("path_radiance", "det_div(f1;f1;", one)), "roulette", "throughput");
+             shader_edits(edited_calls("path_radiance", "det_div(f1;f1;", one)), "segment", {"throughput"}, 4);
   faults.add("refraction-inverted", "the index of refraction is that of the way back", glass_scene,
-             shader_edits(edited_returns("relative_index", inverse)), "scatter", "direction");
+             shader_edits(edited_returns("relative_index", inverse)), "scatter", {"lobe", "direction"});
   faults.add("fresnel-inverted", "glass reflects what it should transmit", glass_scene,
-             shader_edits(edited_returns("fresnel_dielectric", complement)), "scatter", "direction");
+             shader_edits(edited_returns("fresnel_dielectric", complement)), "scatter", {"lobe", "direction"});
   faults.add("cosine-missing", "light that arrives at an angle counts in full", plain_scene,
-             shader_edits(edited_results("vertex_value", spv::OpExtInst, one)), "direct light", "radiance");
+             shader_edits(edited_results("vertex_value", spv::OpExtInst, one)), "light value", {"bsdf"});
   faults.add("normal-not-flipped", "normals stay on their own side of a triangle", glass_scene,
-             shader_edits(edited_results("triangle_surface", spv::OpFNegate, negated)), "surface", "geometric_normal");
+             shader_edits(edited_results("triangle_surface", spv::OpFNegate, negated)), "surface",
+             {"geometric normal"});
   faults.add("offset-lost", "rays start on the surface that they leave", plain_scene,
-             shader_edits(edited_returns("offset_distance", zero)), "surface", "offset");
+             shader_edits(edited_returns("offset_distance", zero)), "surface", {"offset"});
   faults.add("mis-weight-lost", "light samples count in full beside scattered rays", plain_scene,
-             shader_edits(edited_returns("light_sample_weight", one)), "direct light", "radiance");
+             shader_edits(edited_returns("light_sample_weight", one)), "light value", {"weight"});
   faults.add("texture-not-repeated", "texture coordinates are clamped where they should repeat", transparent_scene,
-             shader_edits(edited_results("addressed", spv::OpExtInst, zero)), "ray", "answer");
+             shader_edits(edited_results("addressed", spv::OpExtInst, zero)), "ray", {"answer"});
   faults.add_for_picture(
       "last-sample-lost", "a loop over samples ends one too early", plain_scene,
       shader_edits(edited_operand("path_trace", spv::OpULessThan, 2, [](CodeWriter& code, std::uint32_t i) {
