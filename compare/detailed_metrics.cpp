@@ -4,6 +4,11 @@
 
 namespace tandem::compare {
 
+std::span<const pathtracer::Named<MetricSet>> metric_set_names() {
+  static constexpr pathtracer::Named<MetricSet> names[] = {{MetricSet::basic, "basic"}, {MetricSet::all, "all"}};
+  return names;
+}
+
 DetailedMetrics measure_in_detail(const pathtracer::Image& a, const pathtracer::Image& b, MetricSet set) {
   DetailedMetrics metrics;
   metrics.ulp = ulp_histogram(a, b);

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "compare/flip/flip.hpp"
 #include "compare/regions.hpp"
 #include "compare/relative_error.hpp"
 #include "compare/ulp_histogram.hpp"
+#include "pathtracer/scene_settings.hpp"
 
 namespace tandem::compare {
 
@@ -15,6 +17,9 @@ enum class MetricSet {
   basic,  ///< all but FLIP, in a fraction of a second
   all     ///< FLIP too, which takes seconds for a million pixels
 };
+
+/// "basic" and "all".
+std::span<const pathtracer::Named<MetricSet>> metric_set_names();
 
 /// What docs/metrics.md describes beyond Metrics.
 struct DetailedMetrics {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compare/difference.hpp"
+#include "compare/flip/flip.hpp"
 #include "pathtracer/error.hpp"
 #include "pathtracer/image_io.hpp"
 #include "tools/command.hpp"
@@ -77,6 +78,9 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
   add_rendering("b.png", report.b);
   add("difference.exr", [&report] { return compare::signed_difference(report.a.image, report.b.image); }, metadata, {});
   add("difference.png", [&report] { return compare::heat_map(report.a.image, report.b.image); }, metadata, {});
+  if (options.comparison.metrics == compare::MetricSet::all) {
+    add("flip.png", [&report] { return compare::error_map(*report.detailed_metrics->flip); }, metadata, {});
+  }
   return files;
 }
 
@@ -120,7 +124,8 @@ void add_diff_command(CLI::App& app, Action& action) {
   command->add_option("--junit", options->junit, "Write the verdict as JUnit XML, for CI")->type_name("FILE");
   command
       ->add_option("--out", options->folder,
-                   "Write a, b and their difference as .exr and .png, and diff.json, into this folder, made if it is "
+                   "Write a, b and their difference as .exr and .png, FLIP where measured, and diff.json, into this "
+                   "folder, made if it is "
                    "missing")
       ->type_name("DIR");
   command

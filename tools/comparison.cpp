@@ -9,6 +9,8 @@ namespace tandem::tools {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_trace_form(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
   add_trace_form(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
+  add_named(command, "--metrics", options.metrics, compare::metric_set_names(),
+            "all: FLIP and a table of regions too, which takes some seconds [basic]");
   command
       .add_option("--arbiter", options.arbiter,
                   "Ask this device, for the pixels that differ, which of the two chose the right triangle: cpu-exact")
@@ -57,6 +59,8 @@ DiffReport compare_devices(Comparison& comparison) {
   report.a = render(comparison.a, comparison.devices.a->info(), job.samples);
   report.b = render(comparison.b, comparison.devices.b->info(), job.samples);
   report.metrics = compare::measure(report.a.image, report.b.image);
+  report.detailed_metrics =
+      compare::measure_in_detail(report.a.image, report.b.image, options.metrics.value_or(compare::MetricSet::basic));
   report.verdict = compare::judge({.metrics = report.metrics}, report.thresholds);
   if (comparison.arbiter) {
     report.arbiter = options.arbiter;

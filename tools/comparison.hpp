@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "compare/detailed_metrics.hpp"
 #include "compare/thresholds.hpp"
 #include "pathtracer/renderer.hpp"
 #include "pathtracer/trace_form.hpp"
@@ -26,7 +27,8 @@ struct ComparisonOptions {
   std::string b = "vulkan";                      ///< the second
   std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of the RenderOptions
   std::optional<pathtracer::TraceForm> trace_b;
-  compare::Thresholds usual_thresholds;  ///< where neither `thresholds` nor the scene's file says otherwise
+  std::optional<compare::MetricSet> metrics;  ///< none: basic
+  compare::Thresholds usual_thresholds;       ///< where neither `thresholds` nor the scene's file says otherwise
   ThresholdOptions thresholds;
   std::string arbiter;  ///< the device that judges pixels that differ; empty: nobody is asked
   std::uint64_t arbiter_pixels = 1000;

@@ -9,6 +9,7 @@
 #include "tools/baseline_report.hpp"
 #include "tools/device_json.hpp"
 #include "tools/examination_report.hpp"
+#include "tools/metrics_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -75,6 +76,7 @@ std::string table(const DiffReport& report) {
   line("RMSE", fmt::format("{:.6g}", metrics.rmse));
   line("PSNR", metrics.psnr ? fmt::format("{:.2f} dB (peak {:.6g})", *metrics.psnr, metrics.peak)
                             : std::string("infinite (no difference)"));
+  if (report.detailed_metrics) text += table(*report.detailed_metrics);
   text += '\n';
   line("tier", compare::name(report.verdict.tier));
   line("verdict", compare::name(report.verdict));
@@ -120,6 +122,7 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
   for (const compare::Rule& rule : report.thresholds.rules)
     if (compare::applies(rule.metric, report.thresholds.tier))
       json["thresholds"][compare::name(rule.metric)] = {{"limit", rule.limit}, {"reason", rule.reason}};
+  if (report.detailed_metrics) json["metrics"] = to_json(*report.detailed_metrics);
   if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
   if (report.baseline) json["baseline"] = to_json(*report.baseline);
   json["version"] = TANDEM_VERSION;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/detailed_metrics.hpp"
 #include "compare/examination.hpp"
 #include "compare/metrics.hpp"
 #include "compare/verdict.hpp"
@@ -20,6 +21,7 @@ struct DiffReport {
   Rendering a;
   Rendering b;
   compare::Metrics metrics;
+  std::optional<compare::DetailedMetrics> detailed_metrics;
   compare::Thresholds thresholds;
   compare::Verdict verdict;
   std::string arbiter;                              ///< the device that judged; empty: none was asked

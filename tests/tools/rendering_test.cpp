@@ -119,9 +119,10 @@ TEST_CASE("diff of both forms of tracing on a device agrees in every bit") {
 
 TEST_CASE("diff of a device with itself agrees in every bit, and writes all that it promises") {
   const TemporaryFolder folder;
-  const Outcome outcome = run_tandem({"diff", box, "--a", "cpu", "--b", "cpu", "--size", "32x24", "--spp", "2",
-                                      "--json", "deep/diff.json", "--out", "deep", "--min-bit-equal", "1"},
-                                     {.folder = folder.path()});
+  const Outcome outcome =
+      run_tandem({"diff", box, "--a", "cpu", "--b", "cpu", "--size", "32x24", "--spp", "2", "--json", "deep/diff.json",
+                  "--out", "deep", "--min-bit-equal", "1", "--metrics", "all"},
+                 {.folder = folder.path()});
   CHECK(outcome.errors == "");
   REQUIRE(outcome.exit_code == 0);
   CHECK(outcome.output.find("verdict           agree\n") != std::string::npos);
@@ -138,6 +139,12 @@ TEST_CASE("diff of a device with itself agrees in every bit, and writes all that
   CHECK(json.at("psnr").is_null());
   CHECK(json.at("verdict") == "agree");
   CHECK(json.at("reasons").empty());
+  CHECK(json.at("metrics").at("ulp").at("values") == 3 * 32 * 24);
+  CHECK(json.at("metrics").at("ulp").at("bins").size() == 1);
+  CHECK(json.at("metrics").at("ssim") == 1.0);
+  CHECK(json.at("metrics").at("flip").at("max") == 0.0);
+  CHECK(json.at("metrics").at("hdr_flip").at("max") == 0.0);
+  CHECK(json.at("metrics").at("worst_region").is_null());
   CHECK(json.at("rays_a") == json.at("rays_b"));
   // Every camera path is a ray, and no path has more than 8 segments and as many shadow rays.
   CHECK(json.at("rays_a").get<int>() >= 32 * 24 * 2);
@@ -156,8 +163,8 @@ TEST_CASE("diff of a device with itself agrees in every bit, and writes all that
     names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
-  CHECK(names ==
-        std::vector<std::string>{"a.exr", "a.png", "b.exr", "b.png", "diff.json", "difference.exr", "difference.png"});
+  CHECK(names == std::vector<std::string>{"a.exr", "a.png", "b.exr", "b.png", "diff.json", "difference.exr",
+                                          "difference.png", "flip.png"});
   for (const glm::vec3& pixel : pathtracer::read_image(folder.path() / "deep/difference.exr").pixels) {
     CHECK(pixel == glm::vec3(0.0F));
   }
