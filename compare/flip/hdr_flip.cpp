@@ -12,7 +12,7 @@ namespace tandem::compare {
 namespace {
 
 /// The ACES film curve (k0 x^2 + k1 x + k2) / (k3 x^2 + k4 x + k5) by Narkowicz, 2015, with his factor of 0.6 before it
-/// that makes it as bright as the original ([HDR] section 2.2).
+/// that makes it as bright as the original.
 struct AcesCurve {
   static constexpr double scale = 0.6;
   static constexpr double k0 = scale * scale * 2.51;
