@@ -151,7 +151,10 @@ std::string choice_text(const char* field, std::uint32_t value) {
     if ((value & 4u) != 0) text += fmt::format("{}transmission", text.empty() ? "" : " ");
     return text;
   }
-  return value == 0xffffffffu ? "medium" : fmt::format("{}", value);
+  // MATERIAL_* of shaders/scene.glsl; a vertex within a medium has no material.
+  if (value == 0xffffffffu) return "medium";
+  return pick({"diffuse", "mirror", "dielectric", "oren-nayar", "phong", "blinn-phong", "conductor", "rough dielectric",
+               "thin", "principled", "boundary"});
 }
 
 }  // namespace
