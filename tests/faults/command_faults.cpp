@@ -131,7 +131,7 @@ void add_structure_faults(FaultList& faults) {
                         triangles([](rhi::TriangleGeometry& geometry) { geometry.transform = {}; }),
                         "transform at build", "type");
   faults.add_harmless("positions-off", "structures keep positions up to 16 floats off", glass_scene,
-                      vertices(slightly_off), Finder::picture);
+                      vertices(slightly_off), Finder::survey);
 }
 
 void add_dispatch_faults(FaultList& faults) {
@@ -150,8 +150,8 @@ void add_dispatch_faults(FaultList& faults) {
   faults.add_for_picture("fill-skipped", "filling a buffer does nothing", plain_scene, fill);
   DeviceEdits upload;
   upload.upload = lose_last_block;
-  faults.add("upload-cut", "the end of an upload is lost where it does not fill 64 bytes", plain_scene, upload,
-             "surface", {"material"});
+  faults.add("upload-cut", "the end of an upload is lost where it does not fill 64 bytes", plain_scene, upload, "ray",
+             {"answer"});
   DeviceEdits specialization;
   specialization.specialization = [](std::vector<rhi::SpecializationValue>& values) { values.clear(); };
   faults.add("specialisation-ignored", "specialisation constants keep their defaults", transparent_scene,

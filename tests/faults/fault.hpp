@@ -73,6 +73,8 @@ inline constexpr const char* sphere_scene = "cornell_box_spheres.json";
 /// Edits of shaders alone.
 DeviceEdits shader_edits(ShaderEdit edit);
 
+/// No fault at all, of which nothing must be found.
+std::vector<Fault> no_faults();
 /// Faults of a device's ray queries.
 std::vector<Fault> query_faults();
 /// Faults of the shaders of its ray tracing pipelines.

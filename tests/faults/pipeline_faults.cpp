@@ -34,6 +34,11 @@ std::vector<Fault> pipeline_faults() {
   faults.add("closest-hit-sees-first-instance", "gl_InstanceCustomIndexEXT is 0 in closest-hit shaders", sphere_scene,
              in_stage(ShaderStage::closest_hit, edited_builtin(spv::BuiltInInstanceCustomIndexKHR, zero)), "ray",
              {"answer"});
+  faults.add("report-ignored", "what intersection shaders report is lost", sphere_scene,
+             in_stage(ShaderStage::intersection,
+                      edited_returns("sphere_hit",
+                                     [](CodeWriter& code, std::uint32_t) { return code.module().constant(-1.0f); })),
+             "ray", {"answer"});
   faults.add("reported-t-doubled", "a hit is twice as far away as reportIntersectionEXT said", sphere_scene,
              in_stage(ShaderStage::intersection,
                       edited_operand(spv::OpReportIntersectionKHR, 2,

@@ -22,10 +22,6 @@ DeviceEdits operand(std::size_t index, ValueEdit edit) {
   return shader_edits(edited_operand(spv::OpRayQueryInitializeKHR, index, std::move(edit)));
 }
 
-DeviceEdits always_zero(spv::Op opcode) {
-  return results(opcode, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0); });
-}
-
 std::uint32_t one_less(CodeWriter& code, std::uint32_t value) {
   SpirvModule& module = code.module();
   const std::uint32_t less = code.value(spv::OpISub, module.int_type(), {value, module.constant(1)});
@@ -133,12 +129,8 @@ std::vector<Fault> query_faults() {
              results(spv::OpRayQueryGetIntersectionPrimitiveIndexKHR, one_less), "ray", {"answer"});
   faults.add("primitive-off-by-one-in-later-geometries", "the same, but not in the first geometry of a bottom level",
              transparent_scene, shader_edits(off_by_one_in_later_geometries()), "ray", {"answer"});
-  faults.add("geometry-always-first", "the index of a geometry is always 0", transparent_scene,
-             always_zero(spv::OpRayQueryGetIntersectionGeometryIndexKHR), "ray", {"answer"});
   faults.add("confirm-ignored", "rayQueryConfirmIntersectionEXT does nothing", transparent_scene,
              shader_edits(without(spv::OpRayQueryConfirmIntersectionKHR)), "ray", {"answer"});
-  faults.add("generate-ignored", "rayQueryGenerateIntersectionEXT does nothing", sphere_scene,
-             shader_edits(without(spv::OpRayQueryGenerateIntersectionKHR)), "ray", {"answer"});
 
   // What is reported of a hit.
   faults.add_for_survey("barycentrics-swapped", "the two barycentric coordinates change places", plain_scene,

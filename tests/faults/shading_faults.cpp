@@ -102,8 +102,8 @@ std::vector<Fault> shading_faults() {
   faults.add("cosine-missing", "light that arrives at an angle counts in full", plain_scene,
              shader_edits(edited_results("vertex_value", spv::OpExtInst, one)), "light value", {"bsdf"});
   faults.add("normal-not-flipped", "normals stay on their own side of a triangle", glass_scene,
-             shader_edits(edited_results("triangle_surface", spv::OpFNegate, negated)), "surface",
-             {"geometric normal"});
+             shader_edits(edited_results("triangle_surface", spv::OpFNegate, negated)), "surface", {"geometric normal"},
+             1);
   faults.add("offset-lost", "rays start on the surface that they leave", plain_scene,
              shader_edits(edited_returns("offset_distance", zero)), "surface", {"offset"});
   faults.add("mis-weight-lost", "light samples count in full beside scattered rays", plain_scene,
