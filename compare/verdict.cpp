@@ -19,11 +19,8 @@ class Judge {
   void check_counts(const Evidence& evidence) {
     check_finite('a', evidence.metrics.non_finite_a);
     check_finite('b', evidence.metrics.non_finite_b);
-    const double most = thresholds_.limit(RuleMetric::mismatches);
-    const std::uint64_t count = evidence.mismatches.value_or(0);
-    require(static_cast<double>(count) <= most,
-            fmt::format("{} without an excuse; {} may.",
-                        count == 1 ? "1 path differs" : fmt::format("{} paths differ", count), count_text(most)));
+    check_mismatches(evidence.mismatches.value_or(0), "path differs", "paths differ");
+    check_mismatches(evidence.probe_mismatches.value_or(0), "answer to a probe differs", "answers to probes differ");
   }
 
   void check_exact(const Metrics& metrics) {
@@ -64,8 +61,15 @@ class Judge {
 
   void check_finite(char image, std::uint64_t count) {
     const double most = thresholds_.limit(RuleMetric::non_finite);
+    require(
+        static_cast<double>(count) <= most,
+        fmt::format("Image {} has {} pixels with a NaN or an infinity; {} may have.", image, count, count_text(most)));
+  }
+
+  void check_mismatches(std::uint64_t count, const char* one, const char* several) {
+    const double most = thresholds_.limit(RuleMetric::mismatches);
     require(static_cast<double>(count) <= most,
-            fmt::format("Image {} has {} pixels with a NaN or an infinity; {} may have.", image, count, count_text(most)));
+            fmt::format("{} {} without an excuse; {} may.", count, count == 1 ? one : several, count_text(most)));
   }
 
   void check_fraction(RuleMetric metric, double fraction, const char* what) {

@@ -17,6 +17,11 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
       ->type_name("D3");
   add_whole_number(command, "--arbiter-pixels", options.arbiter_pixels, 1, std::uint64_t{1} << 24,
                    "Pixels to examine at most");
+  command.add_flag("--probe", options.probe,
+                   "Ask the scene's geometry in ways that the path tracer does not use, too: under masks, culling, "
+                   "other ranges of t, moved and mirrored, updated, ...");
+  add_whole_number(command, "--probe-rays", options.probe_rays, 1, std::uint64_t{1} << 19,
+                   "Rays to probe with at most, of paths all over the picture");
   add_threshold_options(command, options.thresholds);
 }
 
@@ -61,7 +66,14 @@ DiffReport compare_devices(Comparison& comparison) {
   report.metrics = compare::measure(report.a.image, report.b.image);
   report.detailed_metrics =
       compare::measure_in_detail(report.a.image, report.b.image, options.metrics.value_or(compare::MetricSet::basic));
-  report.verdict = compare::judge({.metrics = report.metrics}, report.thresholds);
+  compare::Evidence evidence{.metrics = report.metrics};
+  if (options.probe) {
+    report.probes = compare::probe(*comparison.devices.a, *comparison.devices.b, job.scene,
+                                   compare::path_rays(comparison.a, options.probe_rays), comparison.a.trace(),
+                                   comparison.b.trace());
+    evidence.probe_mismatches = report.probes->count(compare::DifferenceClass::mismatch);
+  }
+  report.verdict = compare::judge(evidence, report.thresholds);
   if (comparison.arbiter) {
     report.arbiter = options.arbiter;
     report.examination = compare::examine(comparison.a, comparison.b, *comparison.arbiter, report.a.image,

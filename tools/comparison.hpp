@@ -32,6 +32,8 @@ struct ComparisonOptions {
   ThresholdOptions thresholds;
   std::string arbiter;  ///< the device that judges pixels that differ; empty: nobody is asked
   std::uint64_t arbiter_pixels = 1000;
+  bool probe = false;               ///< whether the scene's geometry is asked in other ways too
+  std::uint64_t probe_rays = 2048;  ///< in each of the trials, at most
 };
 
 /// Declares the options on the command, all but the devices a and b. `options` must outlive the parsing.

@@ -10,6 +10,7 @@
 #include "tools/device_json.hpp"
 #include "tools/examination_report.hpp"
 #include "tools/metrics_report.hpp"
+#include "tools/probe_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -82,6 +83,7 @@ std::string table(const DiffReport& report) {
   line("verdict", compare::name(report.verdict));
   for (const std::string& reason : report.verdict.reasons) line("", reason);
   if (report.examination) text += '\n' + table(*report.examination, report.arbiter);
+  if (report.probes) text += '\n' + table(*report.probes);
   if (report.baseline) text += '\n' + table(*report.baseline);
   return text;
 }
@@ -124,6 +126,7 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
       json["thresholds"][compare::name(rule.metric)] = {{"limit", rule.limit}, {"reason", rule.reason}};
   if (report.detailed_metrics) json["metrics"] = to_json(*report.detailed_metrics);
   if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
+  if (report.probes) json["probes"] = to_json(*report.probes);
   if (report.baseline) json["baseline"] = to_json(*report.baseline);
   json["version"] = TANDEM_VERSION;
   return json;

@@ -8,6 +8,7 @@
 #include "compare/detailed_metrics.hpp"
 #include "compare/examination.hpp"
 #include "compare/metrics.hpp"
+#include "compare/probe/probing.hpp"
 #include "compare/verdict.hpp"
 #include "tools/baseline.hpp"
 #include "tools/job_report.hpp"
@@ -26,6 +27,7 @@ struct DiffReport {
   compare::Verdict verdict;
   std::string arbiter;                              ///< the device that judged; empty: none was asked
   std::optional<compare::Examination> examination;  ///< of the pixels that differ, where an arbiter was asked
+  std::optional<compare::Probing> probes;           ///< where it was asked to probe
   std::optional<Baseline> baseline;                 ///< where a stored run was given
 };
 

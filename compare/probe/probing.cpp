@@ -14,10 +14,13 @@ std::size_t index_of(DifferenceClass kind) { return static_cast<std::size_t>(kin
 
 }  // namespace
 
-std::uint64_t Probing::count(DifferenceClass kind) const {
-  std::uint64_t sum = 0;
-  for (const ProbeTrial& trial : trials) sum += trial.classes[index_of(kind)];
-  return sum;
+std::uint64_t Probing::count(DifferenceClass kind) const { return classes()[index_of(kind)]; }
+
+ClassCounts Probing::classes() const {
+  ClassCounts sums{};
+  for (const ProbeTrial& trial : trials)
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += trial.classes[i];
+  return sums;
 }
 
 Probing probe(rhi::Device& a, rhi::Device& b, const pathtracer::Scene& scene, std::span<const PathRay> rays,

@@ -45,7 +45,9 @@ struct Probing {
   std::vector<ProbeTrial> trials;
   std::vector<std::string> left_out;         ///< trials that were not made, and why: one sentence each
   std::vector<ProbeDifference> differences;  ///< all but those of class rounding: by trial, then ray
-  /// Trials and rays of a class.
+  /// Differences of all trials by class.
+  ClassCounts classes() const;
+  /// Those of one class.
   std::uint64_t count(DifferenceClass kind) const;
 };
 

@@ -40,6 +40,25 @@ void cut(ProbeRay& ray, Window window, const Encounter& first) {
 
 }  // namespace
 
+std::vector<PathRay> path_rays(pathtracer::Renderer& renderer, std::size_t count) {
+  // A few rays of each of many paths, so that there are rays of every bounce.
+  constexpr std::size_t rays_of_path = 4;
+  const glm::uvec2 size(renderer.settings().width, renderer.settings().height);
+  const std::size_t pixel_count = std::size_t{size.x} * size.y;
+  const std::size_t path_count = std::min(pixel_count, (count + rays_of_path - 1) / rays_of_path);
+  std::vector<pathtracer::PathId> paths;
+  for (std::size_t i = 0; i < path_count; ++i) {
+    const std::size_t pixel = i * pixel_count / path_count;
+    paths.push_back({.pixel = {pixel % size.x, pixel / size.x}, .sample = 0});
+  }
+  const std::vector<std::vector<pathtracer::TracedRay>> logs = renderer.log_paths(paths);
+  std::vector<PathRay> rays;
+  for (std::size_t i = 0; i < logs.size(); ++i)
+    for (std::uint32_t index = 0; index < logs[i].size(); ++index)
+      if (is_askable(logs[i][index])) rays.push_back({.path = paths[i], .index = index, .ray = logs[i][index]});
+  return spread_evenly(rays, count);
+}
+
 bool is_askable(const pathtracer::TracedRay& ray) {
   const auto is_finite = [](const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);

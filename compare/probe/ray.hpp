@@ -6,6 +6,7 @@
 #include "compare/probe/answer.hpp"
 #include "compare/probe/reference.hpp"
 #include "compare/probe/trial.hpp"
+#include "pathtracer/renderer.hpp"
 #include "pathtracer/scene.hpp"
 #include "pathtracer/path_event.hpp"
 
@@ -17,6 +18,9 @@ struct PathRay {
   std::uint32_t index = 0;  ///< of all rays of the path
   pathtracer::TracedRay ray;
 };
+
+/// At most `count` rays of the paths that sample 0 of pixels all over the picture takes on the renderer's device.
+std::vector<PathRay> path_rays(pathtracer::Renderer& renderer, std::size_t count);
 
 /// Whether a probe can ask the ray: finite, with a direction.
 bool is_askable(const pathtracer::TracedRay& ray);
