@@ -43,19 +43,25 @@ void cut(ProbeRay& ray, Window window, const Encounter& first) {
 std::vector<PathRay> path_rays(pathtracer::Renderer& renderer, std::size_t count) {
   // A few rays of each of many paths, so that there are rays of every bounce.
   constexpr std::size_t rays_of_path = 4;
+  constexpr std::size_t most_at_once = 4096;  // paths, whose events are in memory together
   const glm::uvec2 size(renderer.settings().width, renderer.settings().height);
   const std::size_t pixel_count = std::size_t{size.x} * size.y;
   const std::size_t path_count = std::min(pixel_count, (count + rays_of_path - 1) / rays_of_path);
-  std::vector<pathtracer::PathId> paths;
+  std::vector<pathtracer::PathStart> starts;
   for (std::size_t i = 0; i < path_count; ++i) {
     const std::size_t pixel = i * pixel_count / path_count;
-    paths.push_back({.pixel = {pixel % size.x, pixel / size.x}, .sample = 0});
+    starts.push_back({.path = {.pixel = {pixel % size.x, pixel / size.x}, .sample = 0}});
   }
-  const std::vector<std::vector<pathtracer::TracedRay>> logs = renderer.log_paths(paths);
   std::vector<PathRay> rays;
-  for (std::size_t i = 0; i < logs.size(); ++i)
-    for (std::uint32_t index = 0; index < logs[i].size(); ++index)
-      if (is_askable(logs[i][index])) rays.push_back({.path = paths[i], .index = index, .ray = logs[i][index]});
+  for (std::size_t first = 0; first < starts.size(); first += most_at_once) {
+    const auto some = std::span(starts).subspan(first, std::min(most_at_once, starts.size() - first));
+    const std::vector<pathtracer::PathEvents> events = renderer.record_paths(some);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const std::vector<pathtracer::TracedRay> of_path = pathtracer::rays_of(some[i].path, events[i]);
+      for (std::uint32_t index = 0; index < of_path.size(); ++index)
+        if (is_askable(of_path[index])) rays.push_back({.path = some[i].path, .index = index, .ray = of_path[index]});
+    }
+  }
   return spread_evenly(rays, count);
 }
 
