@@ -51,7 +51,7 @@ std::string sentence(const ProbeDifference& difference) {
                      compare::name(difference.ruling));
 }
 
-/// At most `count`, those that matter first.
+/// At most `count`, mismatches first.
 std::vector<ProbeDifference> listed(const compare::Probing& probing, std::size_t count) {
   std::vector<ProbeDifference> differences = probing.differences;
   std::stable_partition(differences.begin(), differences.end(),
@@ -89,10 +89,11 @@ std::string table(const compare::Probing& probing) {
   for (std::size_t i = 0; i < classes.size(); ++i)
     if (classes[i] > 0) line("", fmt::format("{} {}", classes[i], compare::name(static_cast<DifferenceClass>(i))));
   for (const std::string& reason : probing.left_out) line("left out", reason);
-  const std::vector<ProbeDifference> shown = listed(probing, most_in_table);
-  for (const ProbeDifference& difference : shown) line("", sentence(difference));
-  if (shown.size() < probing.differences.size())
-    line("", fmt::format("and {} more", probing.differences.size() - shown.size()));
+  // What rounding explains is for programs.
+  const std::uint64_t mismatches = probing.count(DifferenceClass::mismatch);
+  const std::size_t shown = std::min<std::uint64_t>(mismatches, most_in_table);
+  for (const ProbeDifference& difference : listed(probing, shown)) line("", sentence(difference));
+  if (shown < mismatches) line("", fmt::format("and {} more mismatches", mismatches - shown));
   return text;
 }
 

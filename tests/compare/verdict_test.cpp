@@ -104,6 +104,9 @@ TEST_CASE("a path that differs without an excuse breaks every tier") {
   CHECK(only_reason({.metrics = metrics, .mismatches = 1, .bias = {}}) ==
         "1 path differs without an excuse; none may.");
   CHECK(judge({.metrics = metrics, .mismatches = 0, .bias = {}}).agree);
+  CHECK(only_reason({.metrics = metrics, .probe_mismatches = 2}) ==
+        "2 answers to probes differ without an excuse; none may.");
+  CHECK(judge({.metrics = metrics, .probe_mismatches = 0}).agree);
   metrics.bit_equal = 1;
   CHECK_FALSE(judge({.metrics = metrics, .mismatches = 7, .bias = {}}, of(Tier::exact)).agree);
   CHECK(judge({.metrics = metrics, .mismatches = 7, .bias = {}}, with(Tier::exact, RuleMetric::mismatches, 7)).agree);
