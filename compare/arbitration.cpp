@@ -198,16 +198,16 @@ bool passes_by(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32
 PathComparison compare_paths(const pathtracer::PathId& path, std::span<const TracedRay> a,
                              std::span<const TracedRay> b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (!is_same_ray(a[i], b[i])) return {.parting = Parting::rounding, .dispute = std::nullopt};
+    if (!is_same_ray(a[i], b[i])) return {.parting = RayParting::rounding, .dispute = std::nullopt};
     if (a[i].answer == b[i].answer) continue;
-    return {.parting = Parting::dispute,
+    return {.parting = RayParting::dispute,
             .dispute = Dispute{.path = path,
                                .ray_index = static_cast<std::uint32_t>(i),
                                .ray = a[i],
                                .answer_a = a[i].answer,
                                .answer_b = b[i].answer}};
   }
-  return {.parting = a.size() == b.size() ? Parting::none : Parting::length, .dispute = std::nullopt};
+  return {.parting = a.size() == b.size() ? RayParting::none : RayParting::length, .dispute = std::nullopt};
 }
 
 const char* name(Ruling ruling) {

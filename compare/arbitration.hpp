@@ -24,7 +24,7 @@ struct Dispute {
 };
 
 /// How the same path went on two devices.
-enum class Parting {
+enum class RayParting {
   none,      ///< the same rays and the same answers
   dispute,   ///< the same ray had two answers
   rounding,  ///< the rays themselves differ in some bit, though all answers before were the same
@@ -32,8 +32,8 @@ enum class Parting {
 };
 
 struct PathComparison {
-  Parting parting = Parting::none;
-  std::optional<Dispute> dispute;  ///< of Parting::dispute
+  RayParting parting = RayParting::none;
+  std::optional<Dispute> dispute;  ///< of RayParting::dispute
 };
 
 /// @param a,b the rays of one path on two devices, in the order in which they were traced

@@ -18,9 +18,10 @@
 
 /// Why two devices differ: paths are recorded on both, and every event in which they part is classed.
 ///
-/// The first event in which two recordings differ has the same inputs on both devices, bit by bit, so it can be judged
-/// by itself. From the next segment on, device b goes on with the state that a had there; so each parting is judged by
-/// itself, however many there are on a path, and no error builds up.
+/// Device b runs each segment of a path from the state that a had at its beginning. Both then have the same inputs, bit
+/// by bit, so each segment is judged by itself, however often they part on a path, and no error builds up. A segment's
+/// answers to rays are judged by the exact arbiter; values by a tolerance, and, where that is not enough, like
+/// decisions, by what either device makes of the same state moved by rounding (compare/perturbation.hpp).
 namespace tandem::compare {
 
 /// A place where two devices do not do the same from the same inputs.
@@ -33,7 +34,7 @@ struct Parting {
   std::uint32_t ulp_distance = 0;     ///< of the field
   double relative_difference = 0;     ///< likewise
   std::optional<std::uint32_t> exact_answer = {};  ///< of a ray with two answers: TracedRay::answer
-  std::string sentence;                            ///< what happened, for people
+  std::string sentence = {};                            ///< what happened, for people
 };
 
 /// A path that differs, or was looked at all the same.
@@ -55,15 +56,18 @@ struct ClassifiedPixel {
 struct ClassificationOptions {
   std::size_t pixel_limit = 10000;  ///< of the pixels that differ, at most so many are classed, spread evenly
   std::size_t survey_pixels = 256;  ///< besides, so many pixels all over the picture, sample 0, observed fields too
-  std::size_t path_limit = 100000;  ///< paths recorded whole at most; it bounds time and memory
+  /// No more pixels are looked at once so many paths have been recorded whole, or have mismatches: it bounds time.
+  /// Pixels are looked at in an order that spreads evenly, too.
+  std::size_t path_limit = 100000;
+  std::size_t mismatch_limit = 1000;
 };
 
 struct Classification {
   std::uint64_t differing_pixels = 0;  ///< that are not bit-equal
   std::uint64_t classed_pixels = 0;    ///< of them
   std::uint64_t surveyed_pixels = 0;
-  std::uint64_t traced_paths = 0;       ///< on each of the devices
-  std::uint64_t differing_paths = 0;    ///< of them
+  std::uint64_t traced_paths = 0;       ///< all samples of all these pixels, on each of the devices
+  std::uint64_t differing_paths = 0;    ///< of them: in any bit of any event but observed fields
   ClassCounts pixel_counts{};           ///< classed pixels by their worst class
   ClassCounts parting_counts{};         ///< all partings, those of the survey included
   std::vector<ClassifiedPixel> pixels;  ///< classed ones, and surveyed ones with a mismatch, row by row
@@ -75,17 +79,18 @@ struct Classification {
 struct Devices {
   pathtracer::Renderer& a;
   pathtracer::Renderer& b;
-  pathtracer::Renderer& arbiter;  ///< traces exactly
-  const pathtracer::Scene& scene;
+  pathtracer::Renderer& arbiter;   ///< traces exactly
+  const pathtracer::Scene& scene;  ///< as the renderers were given it
 };
 
 /// Classes the difference of two pictures. @param samples behind each pixel of both
-/// @param progress as of Renderer::render; cancelling it gives what is known so far
+/// @param progress of the work at most; cancelling it gives what is known so far
 Classification classify(Devices devices, const pathtracer::Image& image_a, const pathtracer::Image& image_b,
                         std::uint32_t samples, const ClassificationOptions& options = {},
                         const pathtracer::Progress& progress = {});
 
-/// The partings of paths, whole and observed fields included.
+/// The partings of paths, observed fields included; one element for each path, in their order. All recordings are in
+/// memory at once: some 20 KB a path.
 std::vector<ClassifiedPath> classify_paths(Devices devices, std::span<const pathtracer::PathId> paths);
 
 }  // namespace tandem::compare

@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "rhi/error.hpp"
 
 namespace tandem::compare {
 namespace {
 
+void require_same_size(const pathtracer::Image& a, const pathtracer::Image& b) {
+  if (a.width == b.width && a.height == b.height && a.pixels.size() == b.pixels.size()) return;
+  throw rhi::Error(rhi::ErrorCode::invalid_argument, "",
+                   "the difference of two images of different sizes was asked for");
+}
+
 /// The pixel-by-pixel image of a function of two pixels.
 template <typename Function>
 pathtracer::Image combine(const pathtracer::Image& a, const pathtracer::Image& b, Function function) {
-  if (a.width != b.width || a.height != b.height || a.pixels.size() != b.pixels.size()) {
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, "",
-                     "the difference of two images of different sizes was asked for");
-  }
+  require_same_size(a, b);
   pathtracer::Image result{.width = a.width, .height = a.height, .pixels = {}};
   result.pixels.resize(a.pixels.size());
   std::transform(a.pixels.begin(), a.pixels.end(), b.pixels.begin(), result.pixels.begin(), function);
@@ -51,6 +55,20 @@ pathtracer::Image heat_map(const pathtracer::Image& a, const pathtracer::Image& 
     }
     return heat(largest);
   });
+}
+
+std::vector<glm::uvec2> differing_pixels(const pathtracer::Image& a, const pathtracer::Image& b, std::size_t limit,
+                                         std::uint64_t& differing_count) {
+  require_same_size(a, b);
+  std::vector<glm::uvec2> pixels;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    if (std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(a.pixels[i])) != 0)
+      pixels.emplace_back(static_cast<std::uint32_t>(i % a.width), static_cast<std::uint32_t>(i / a.width));
+  differing_count = pixels.size();
+  if (pixels.size() <= limit) return pixels;
+  std::vector<glm::uvec2> some;
+  for (std::size_t i = 0; i < limit; ++i) some.push_back(pixels[i * pixels.size() / limit]);
+  return some;
 }
 
 }  // namespace tandem::compare

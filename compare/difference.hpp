@@ -1,8 +1,14 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
 #include "pathtracer/image.hpp"
 
-/// Pictures of a difference. Both throw rhi::Error(invalid_argument) when the images differ in size.
+/// Where pictures differ, and pictures of it. All throw rhi::Error(invalid_argument) when the images differ in size.
 namespace tandem::compare {
 
 /// a - b in each channel, signed, in linear radiance: for an EXR.
@@ -13,5 +19,10 @@ pathtracer::Image signed_difference(const pathtracer::Image& a, const pathtracer
 /// cyan 1e-4, green 1e-3, yellow 1e-2, red 1e-1, white from 1 on. Magenta: a NaN or an infinity in either image.
 /// The colours are linear.
 pathtracer::Image heat_map(const pathtracer::Image& a, const pathtracer::Image& b);
+
+/// Pixels of which any channel has different bits, row by row; at most `limit` of them, spread evenly over the picture.
+/// @param differing_count receives how many there are in all
+std::vector<glm::uvec2> differing_pixels(const pathtracer::Image& a, const pathtracer::Image& b, std::size_t limit,
+                                         std::uint64_t& differing_count);
 
 }  // namespace tandem::compare

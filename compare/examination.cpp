@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "compare/difference.hpp"
 #include "pathtracer/device_scene.hpp"
 
 namespace tandem::compare {
@@ -10,19 +11,6 @@ namespace tandem::compare {
 std::uint64_t Examination::count(Ruling ruling) const {
   return static_cast<std::uint64_t>(
       std::ranges::count_if(disputes, [ruling](const JudgedDispute& each) { return each.judgement.ruling == ruling; }));
-}
-
-std::vector<glm::uvec2> differing_pixels(const pathtracer::Image& a, const pathtracer::Image& b, std::size_t limit,
-                                         std::uint64_t& differing_count) {
-  std::vector<glm::uvec2> pixels;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    if (std::memcmp(&a.pixels[i], &b.pixels[i], sizeof(a.pixels[i])) != 0)
-      pixels.emplace_back(static_cast<std::uint32_t>(i % a.width), static_cast<std::uint32_t>(i / a.width));
-  differing_count = pixels.size();
-  if (pixels.size() <= limit) return pixels;
-  std::vector<glm::uvec2> some;
-  for (std::size_t i = 0; i < limit; ++i) some.push_back(pixels[i * pixels.size() / limit]);
-  return some;
 }
 
 Examination examine(pathtracer::Renderer& a, pathtracer::Renderer& b, pathtracer::Renderer& arbiter,
@@ -44,10 +32,10 @@ Examination examine(pathtracer::Renderer& a, pathtracer::Renderer& b, pathtracer
     for (std::size_t i = first; i < first + samples; ++i) {
       const PathComparison comparison =
           compare_paths(paths[i], pathtracer::rays_of(paths[i], log_a[i]), pathtracer::rays_of(paths[i], log_b[i]));
-      result.parted_by_dispute += comparison.parting == Parting::dispute ? 1 : 0;
-      result.parted_by_rounding += comparison.parting == Parting::rounding ? 1 : 0;
-      result.parted_by_length += comparison.parting == Parting::length ? 1 : 0;
-      parted = parted || comparison.parting != Parting::none;
+      result.parted_by_dispute += comparison.parting == RayParting::dispute ? 1 : 0;
+      result.parted_by_rounding += comparison.parting == RayParting::rounding ? 1 : 0;
+      result.parted_by_length += comparison.parting == RayParting::length ? 1 : 0;
+      parted = parted || comparison.parting != RayParting::none;
       if (comparison.dispute) disputes.push_back(*comparison.dispute);
     }
     if (!parted) ++result.unparted_pixels;

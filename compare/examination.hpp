@@ -32,11 +32,6 @@ struct Examination {
   std::uint64_t count(Ruling ruling) const;
 };
 
-/// Pixels of which any channel has different bits, at most `limit` of them, spread evenly over the picture.
-/// @param differing_count receives how many there are in all
-std::vector<glm::uvec2> differing_pixels(const pathtracer::Image& a, const pathtracer::Image& b, std::size_t limit,
-                                         std::uint64_t& differing_count);
-
 /// The renderers have the same scene and settings; `image_a` and `image_b` are theirs after `samples` samples.
 /// @param scene of the renderers
 /// @param limit pixels to examine at most

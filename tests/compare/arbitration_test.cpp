@@ -13,7 +13,7 @@ namespace {
 
 using namespace tandem;
 using compare::Dispute;
-using compare::Parting;
+using compare::RayParting;
 using compare::Ruling;
 using pathtracer::RayKind;
 using pathtracer::TracedRay;
@@ -160,11 +160,11 @@ TEST_CASE("paths part where a ray or an answer first differs") {
   const TracedRay path[] = {first, first};
   const TracedRay disputed[] = {first, other_answer};
   const TracedRay rounded[] = {first, other_ray};
-  CHECK(compare::compare_paths({}, path, path).parting == Parting::none);
-  CHECK(compare::compare_paths({}, path, std::span(path).first(1)).parting == Parting::length);
-  CHECK(compare::compare_paths({}, path, rounded).parting == Parting::rounding);
+  CHECK(compare::compare_paths({}, path, path).parting == RayParting::none);
+  CHECK(compare::compare_paths({}, path, std::span(path).first(1)).parting == RayParting::length);
+  CHECK(compare::compare_paths({}, path, rounded).parting == RayParting::rounding);
   const compare::PathComparison comparison = compare::compare_paths({.pixel = {3, 4}, .sample = 5}, path, disputed);
-  CHECK(comparison.parting == Parting::dispute);
+  CHECK(comparison.parting == RayParting::dispute);
   REQUIRE(comparison.dispute.has_value());
   CHECK(comparison.dispute->ray_index == 1);
   CHECK(comparison.dispute->answer_a == 0);
