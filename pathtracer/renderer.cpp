@@ -45,19 +45,35 @@ Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSet
   restart(settings);
 }
 
-void Renderer::choose_program(const RenderSettings& settings) {
-  const Features features = scene_.features() | features_of(settings);
-  if (!program_ || program_->features() != built_features(features)) {
-    program_.emplace(*device_, trace_, features);
-    scene_group_ = nullptr;
-    picture_group_ = nullptr;
-  }
-  if (scene_group_) return;
-  scene_group_ =
-      device_->create_bind_group({.pipeline = program_->pipeline(),
-                                  .set = 0,
-                                  .entries = scene_.entries(program_->pipeline()->interface(), constants_buffer_),
-                                  .label = "scene"});
+const PathTraceProgram& Renderer::program(PathTraceTask task) {
+  const auto known = programs_.find(task);
+  if (known != programs_.end()) return known->second;
+  return programs_.emplace(task, PathTraceProgram(*device_, trace_, features_, task)).first->second;
+}
+
+void Renderer::choose_features(const RenderSettings& settings) {
+  const Features features = built_features(scene_.features() | features_of(settings));
+  if (features == features_) return;
+  features_ = features;
+  programs_.clear();
+  scene_group_ = nullptr;
+  picture_group_ = nullptr;
+}
+
+void Renderer::prepare() {
+  const rhi::PipelineHandle& pipeline = program(PathTraceTask::picture).pipeline();
+  if (!scene_group_)
+    scene_group_ = device_->create_bind_group({.pipeline = pipeline,
+                                               .set = 0,
+                                               .entries = scene_.entries(pipeline->interface(), constants_buffer_),
+                                               .label = "scene"});
+  if (!picture_group_)
+    picture_group_ =
+        device_->create_bind_group({.pipeline = pipeline,
+                                    .set = 1,
+                                    .entries = {{.binding = 0, .resource = rhi::BufferRange{radiance_sum_}},
+                                                {.binding = 1, .resource = rhi::BufferRange{ray_counts_}}},
+                                    .label = "picture"});
 }
 
 double Renderer::execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record) {
@@ -79,8 +95,8 @@ void Renderer::restart(const RenderSettings& settings) {
   if (!completed.camera) completed.camera = camera_;
   set_camera(constants_, *completed.camera, settings.width, settings.height);
   camera_ = *completed.camera;
-  choose_program(completed);
-  const bool resized = !picture_group_ || settings.width != settings_.width || settings.height != settings_.height;
+  choose_features(completed);
+  const bool resized = !radiance_sum_ || settings.width != settings_.width || settings.height != settings_.height;
   settings_ = settings;
   warnings_.clear();
   background_ = scene_.environment() ? scene_.environment()->radiance : glm::vec3(0);
@@ -98,12 +114,7 @@ void Renderer::restart(const RenderSettings& settings) {
         {.size = pixels * sizeof(glm::vec3), .usage = rhi::BufferUsage::storage, .label = "radiance sums"});
     ray_counts_ = device_->create_buffer(
         {.size = pixels * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = "ray counts"});
-    picture_group_ =
-        device_->create_bind_group({.pipeline = program_->pipeline(),
-                                    .set = 1,
-                                    .entries = {{.binding = 0, .resource = rhi::BufferRange{radiance_sum_}},
-                                                {.binding = 1, .resource = rhi::BufferRange{ray_counts_}}},
-                                    .label = "picture"});
+    picture_group_ = nullptr;
   }
   pace_ = Pace(settings.submission_seconds);
   clear_picture();
@@ -140,7 +151,7 @@ void Renderer::dispatch(const Tile& tile, std::uint32_t first_sample, std::uint3
       .tile_offset = tile.offset, .tile_size = tile.size, .first_sample = first_sample, .sample_count = sample_count};
   const auto start = std::chrono::steady_clock::now();
   device_milliseconds_ += execute("path tracing", [&](rhi::CommandList& list) {
-    program_->record(list, {scene_group_, picture_group_}, constants);
+    program(PathTraceTask::picture).record(list, {scene_group_, picture_group_}, constants);
   });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   pace_.measured(double(tile.size.x) * double(tile.size.y) * sample_count, elapsed.count());
@@ -149,6 +160,7 @@ void Renderer::dispatch(const Tile& tile, std::uint32_t first_sample, std::uint3
 bool Renderer::render(std::uint32_t samples, const Progress& progress) {
   if (samples > std::numeric_limits<std::uint32_t>::max() - samples_)
     throw Error(fmt::format("{} samples after {} are more than can be counted", samples, samples_));
+  prepare();
   const glm::uvec2 resolution(settings_.width, settings_.height);
   const double pixels = double(resolution.x) * double(resolution.y);
   // A sample traces at most two rays for each segment: its own and one to a light.

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +37,10 @@ class Renderer {
   /// @param trace as choose_trace_form takes it
   Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
            std::optional<TraceForm> trace = {});
+
+  /// Makes what only render needs, as render would otherwise when it is first called: the program that renders. Throws
+  /// rhi::Error for a picture that is too large for the device.
+  void prepare();
 
   /// Adds `samples` to every pixel. False when `progress` cancelled: the picture is then empty again.
   bool render(std::uint32_t samples, const Progress& progress = {});
@@ -90,7 +95,8 @@ class Renderer {
   /// Executes the list, bracketed by timestamps where the device has them; returns milliseconds.
   double execute(const std::string& label, const std::function<void(rhi::CommandList&)>& record);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
-  void choose_program(const RenderSettings& settings);
+  const PathTraceProgram& program(PathTraceTask task);
+  void choose_features(const RenderSettings& settings);
   void clear_picture();
   void collect_ray_counts();
 
@@ -100,7 +106,8 @@ class Renderer {
   TraceForm trace_;
   DeviceScene scene_;
   RenderSettings settings_;
-  std::optional<PathTraceProgram> program_;  ///< for the scene and the settings
+  Features features_ = ~Features{0};                    ///< that are built in, for the scene and the settings
+  std::map<PathTraceTask, PathTraceProgram> programs_;  ///< those that were needed so far
   glm::vec3 background_{0};
   std::vector<std::string> warnings_;
 

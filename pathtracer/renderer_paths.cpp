@@ -64,8 +64,8 @@ std::vector<T> load(rhi::Device& device, const rhi::BufferHandle& buffer, std::s
 
 void Renderer::run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>& buffers,
                         std::span<const DispatchConstants> dispatches) {
-  const PathTraceProgram program(*device_, trace_, program_->features(), task);
-  const rhi::PipelineHandle& pipeline = program.pipeline();
+  const PathTraceProgram& task_program = program(task);
+  const rhi::PipelineHandle& pipeline = task_program.pipeline();
   std::vector<rhi::BindGroupEntry> entries;
   for (const rhi::BufferHandle& buffer : buffers)
     entries.push_back(
@@ -78,7 +78,7 @@ void Renderer::run_task(PathTraceTask task, const std::vector<rhi::BufferHandle>
       device_->create_bind_group({.pipeline = pipeline, .set = 1, .entries = entries, .label = "rays"})};
   for (const DispatchConstants& constants : dispatches) {
     const rhi::CommandListHandle list = device_->create_command_list("rays one by one");
-    program.record(*list, groups, constants);
+    task_program.record(*list, groups, constants);
     device_->submit(list)->wait();
   }
 }

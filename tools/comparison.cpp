@@ -40,6 +40,8 @@ Comparison prepare(const ComparisonOptions& options, const RenderOptions& render
   };
   pathtracer::Renderer a = renderer(devices.a, options.trace_a ? options.trace_a : render_options.trace);
   pathtracer::Renderer b = renderer(devices.b, options.trace_b ? options.trace_b : render_options.trace);
+  a.prepare();
+  b.prepare();
   std::optional<pathtracer::Renderer> arbiter;
   if (devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
   compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
