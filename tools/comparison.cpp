@@ -25,6 +25,12 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_threshold_options(command, options.thresholds);
 }
 
+compare::Thresholds thresholds_for(const ComparisonOptions& options, const RenderOptions& render_options) {
+  compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
+  apply(options.thresholds, thresholds);
+  return thresholds;
+}
+
 ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptions& render_options) {
   ComparedDevices devices;
   devices.a = open_device(options.a, render_options);
@@ -44,11 +50,9 @@ Comparison prepare(const ComparisonOptions& options, const RenderOptions& render
   b.prepare();
   std::optional<pathtracer::Renderer> arbiter;
   if (devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
-  compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
-  apply(options.thresholds, thresholds);
   JobSummary job_summary = summary(render_options, job);
   return {.options = options,
-          .thresholds = std::move(thresholds),
+          .thresholds = thresholds_for(options, render_options),
           .summary = std::move(job_summary),
           .job = std::move(job),
           .devices = std::move(devices),

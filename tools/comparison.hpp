@@ -39,6 +39,10 @@ struct ComparisonOptions {
 /// Declares the options on the command, all but the devices a and b. `options` must outlive the parsing.
 void add_comparison_options(CLI::App& command, ComparisonOptions& options);
 
+/// What a verdict holds the devices to: the options, the scene's file, and the usual thresholds, in this order. Throws
+/// pathtracer::Error.
+compare::Thresholds thresholds_for(const ComparisonOptions& options, const RenderOptions& render_options);
+
 struct ComparedDevices {
   rhi::DeviceHandle a, b;
   rhi::DeviceHandle arbiter;  ///< null: nobody is asked
@@ -50,7 +54,7 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
 /// A scene set up on the devices, before any rendering.
 struct Comparison {
   ComparisonOptions options;
-  compare::Thresholds thresholds;  ///< of the options, the scene's file, and the usual ones, in this order
+  compare::Thresholds thresholds;
   JobSummary summary;
   RenderJob job;
   ComparedDevices devices;

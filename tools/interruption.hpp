@@ -1,14 +1,16 @@
 #pragma once
 
-#include <exception>
+#include <stdexcept>
+#include <string>
 
 /// Ctrl-C and SIGTERM as a request that the work in progress looks at, so that no output is left half-written.
 namespace tandem::tools {
 
 /// Ends an action because the user asked for it.
-class Interrupted : public std::exception {
+class Interrupted : public std::runtime_error {
  public:
-  const char* what() const noexcept override { return "interrupted; nothing was written"; }
+  explicit Interrupted(const std::string& sentence = "interrupted; nothing was written")
+      : std::runtime_error(sentence) {}
 };
 
 /// From now on the first interrupt is only noted; a second one ends the program at once.

@@ -38,6 +38,7 @@ int run(int argc, char** argv) {
   add_bench_command(app, action);
   add_conformance_command(app, action);
   add_study_command(app, action);
+  add_suite_command(app, action);
   const char* const hint = "'tandem --help' lists the commands";
   if (argc < 2) return fail(fmt::format("a command is required; {}", hint));
   if (argv[1][0] != '-' &&
