@@ -9,6 +9,7 @@ find_package(fmt REQUIRED CONFIG)
 find_package(spdlog REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 find_package(CLI11 REQUIRED CONFIG)
+find_package(ZLIB REQUIRED)
 if(TANDEM_IMAGE_LIBRARY STREQUAL "OpenImageIO")
   find_package(OpenImageIO REQUIRED CONFIG QUIET)
   # Debian's package names the headers of OpenCV, which it does not depend on.

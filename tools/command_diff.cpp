@@ -17,6 +17,7 @@
 #include "tools/junit.hpp"
 #include "tools/messages.hpp"
 #include "tools/output_file.hpp"
+#include "tools/report_page.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -27,6 +28,7 @@ struct Options {
   std::filesystem::path json;      ///< empty: none
   std::filesystem::path junit;     ///< empty: none
   std::filesystem::path folder;    ///< empty: no images
+  std::filesystem::path report;    ///< the folder of the page; empty: none
   std::filesystem::path baseline;  ///< the folder of a stored run; empty: none
   pathtracer::Tone tone;
 };
@@ -43,8 +45,8 @@ JunitCase junit_case(const DiffReport& report) {
           .error = {}};
 }
 
-/// What is written once the report is complete; it refers to both.
-std::vector<OutputFile> output_files(const Options& options, const DiffReport& report) {
+/// What is written once the report and the page are complete; it refers to both.
+std::vector<OutputFile> output_files(const Options& options, const DiffReport& report, const std::string& page) {
   std::vector<OutputFile> files;
   const auto add_text = [&](const std::filesystem::path& path, const auto& text) {
     files.push_back({path, [text](const std::filesystem::path& name) { write_text(name, text()); }});
@@ -53,6 +55,9 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
   if (!options.json.empty()) add_text(options.json, json);
   if (!options.junit.empty()) {
     add_text(options.junit, [&report] { return junit_xml("tandem diff", std::vector{junit_case(report)}); });
+  }
+  if (!options.report.empty()) {
+    add_text(options.report / "index.html", [&page] { return page; });
   }
   if (options.folder.empty()) return files;
   const auto add = [&](const char* name, const auto& image, const auto& metadata, const pathtracer::Tone& tone) {
@@ -93,18 +98,26 @@ int diff(const Options& options) {
     baseline = read_stored_run(options.baseline);
   }
   RenderJob job = load_job(options.render);
+  ComparisonOptions comparison_options = options.comparison;
+  // What an eye sees of a difference is a map on the page.
+  if (!options.report.empty() && !comparison_options.metrics) comparison_options.metrics = compare::MetricSet::all;
   Comparison comparison =
-      prepare(options.comparison, options.render, std::move(job), open_devices(options.comparison, options.render));
+      prepare(comparison_options, options.render, std::move(job), open_devices(comparison_options, options.render));
   if (baseline) check_same_job(*baseline, comparison.summary, comparison.a.camera(), comparison.a.background());
   DiffReport report;
-  const std::vector<OutputFile> files = output_files(options, report);
-  const std::optional<OutputFolder> folder =
-      options.folder.empty() ? std::nullopt : std::make_optional<OutputFolder>(options.folder);
+  std::string page;
+  const std::vector<OutputFile> files = output_files(options, report, page);
+  const auto output_folder = [](const std::filesystem::path& path) {
+    return path.empty() ? std::nullopt : std::make_optional<OutputFolder>(path);
+  };
+  const std::optional<OutputFolder> folder = output_folder(options.folder);
+  const std::optional<OutputFolder> page_folder = output_folder(options.report);
   check_output_files(files);
   report = compare_devices(comparison);
   if (baseline) report.baseline = compare_with(*baseline, report);
   print_warnings(report.a.warnings);
   fmt::print("{}", table(report));
+  if (!options.report.empty()) page = report_page(comparison, report);
   write_or_rescue(files);
   return failures(report).empty() ? exit_code::success : exit_code::differ;
 }
@@ -127,6 +140,11 @@ void add_diff_command(CLI::App& app, Action& action) {
                    "Write a, b and their difference as .exr and .png, FLIP where measured, and diff.json, into this "
                    "folder, made if it is "
                    "missing")
+      ->type_name("DIR");
+  command
+      ->add_option("--report", options->report,
+                   "Write a page with images, numbers and paths, index.html, into this folder, made if it is missing; "
+                   "measures --metrics all unless told otherwise")
       ->type_name("DIR");
   command
       ->add_option("--baseline", options->baseline,

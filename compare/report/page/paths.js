@@ -1,0 +1,95 @@
+// What happened along the paths of a pixel, on both devices.
+
+const notComparable = 0xffffffff;
+
+function valueText(value) {
+  if (value === null || value === undefined) return "";
+  return Array.isArray(value) ? value.map(valueText).join(", ") : String(value);
+}
+
+/** Whether nothing differs in an event. */
+function isEqualEvent(event) {
+  return Object.values(event.fields).every((field) => valueText(field.a) === valueText(field.b) && !field.ulp);
+}
+
+function eventRows(event, isFirst, showsAll) {
+  const fields = Object.entries(event.fields);
+  const differing = fields.filter(([, field]) => valueText(field.a) !== valueText(field.b) || field.ulp);
+  const onlyIn = ["a", "b"].find((side) => fields.length > 0 && fields.every(([, field]) => field[side === "a" ? "b" : "a"] === null));
+  const note = onlyIn ? `only on ${onlyIn}`
+    : differing.length === 0 ? "the same" : `${countText(differing.length, "field")} of ${fields.length} differ${differing.length === 1 ? "s" : ""}`;
+  const rows = [element("tr", {className: `event${isFirst ? " first" : ""}${differing.length > 0 ? " changed" : ""}`},
+    element("th", {scope: "row"}, `segment ${event.segment}: ${event.event}`), element("td", {colSpan: 3}, note))];
+  for (const [name, field] of showsAll ? fields : differing) {
+    const isDifferent = differing.some(([other]) => other === name);
+    const ulp = !isDifferent || field.ulp === null || field.ulp === undefined ? ""
+      : field.ulp >= notComparable ? "—" : field.ulp.toLocaleString("en");
+    rows.push(element("tr", {className: `field${isDifferent ? " changed" : ""}`}, element("th", {scope: "row"}, name),
+      element("td", {className: "value"}, valueText(field.a)), element("td", {className: "value"}, valueText(field.b)),
+      element("td", {className: "value"}, ulp)));
+  }
+  return rows;
+}
+
+function eventTable(path, names, showsAll) {
+  const first = path.events.findIndex((event) => !isEqualEvent(event));
+  const head = ["Event and field", `a: ${names.a}`, `b: ${names.b}`, "ULP"].map((text) => element("th", {scope: "col"}, text));
+  const rows = path.events.flatMap((event, i) => eventRows(event, i === first, showsAll));
+  return element("div", {className: "scroll"}, element("table", {className: "events"},
+    element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows)));
+}
+
+/**
+ * Shows the paths of a pixel below the images.
+ * @param scene its file
+ * @param recorded paths with events: {x, y, sample, events}
+ * @param found of the classification: {partings, wrong_sums}
+ */
+function showPaths({scene, data, pixels, names, recorded, found}, pixel) {
+  const heading = byId("paths-heading");
+  const content = byId("path");
+  if (!pixel) {
+    heading.textContent = "Paths of a pixel";
+    content.replaceChildren(element("p", {}, `Click a pixel, or go to the next one that differs. ${recordedSentence(data)}`));
+    return;
+  }
+  heading.replaceChildren(`Paths of pixel ${pixel.x}, ${pixel.y} `, pixelState(pixels, pixel));
+  const isHere = (other) => other.x === pixel.x && other.y === pixel.y;
+  const children = [pixelTable(pixels, names, pixel)];
+  for (const {device} of found.wrong_sums.filter(isHere))
+    children.push(element("p", {className: "problem"}, `The picture of ${names[device]} is not the sum of the paths that it traces here.`));
+  const partings = found.partings.filter(isHere);
+  if (partings.length > 0) {
+    children.push(element("h3", {}, "Where they part"), element("ul", {className: "partings"},
+      ...partings.map((parting) => element("li", {}, classBadge(parting.class), ` sample ${parting.sample}, segment ${parting.segment}: ${parting.sentence}`))));
+  }
+  const paths = recorded.filter(isHere);
+  if (paths.length === 0) children.push(element("p", {}, unrecordedSentence(data, pixels, pixel), ...commandHint(scene, pixel)));
+  for (const path of paths) children.push(...pathBlock(path, names));
+  content.replaceChildren(...children);
+}
+
+function pathBlock(path, names) {
+  const box = element("input", {type: "checkbox"});
+  const table = element("div", {}, eventTable(path, names, false));
+  box.addEventListener("change", () => table.replaceChildren(eventTable(path, names, box.checked)));
+  return [element("h3", {}, `Sample ${path.sample}, event by event`),
+    element("label", {className: "check"}, box, " Show fields that are equal too"), table];
+}
+
+function recordedSentence(data) {
+  if (data.path_count === 0) return "No path was recorded event by event.";
+  return data.path_count < data.differing_pixels
+    ? `Of ${countText(data.differing_pixels, "pixel")} that differ, a path of each of ${data.path_count} was recorded event by event: the worst, then others spread evenly.`
+    : "A path of each pixel that differs was recorded event by event.";
+}
+
+function unrecordedSentence(data, pixels, pixel) {
+  const differs = pixels.differs[pixel.y * pixels.width + pixel.x];
+  const start = differs ? "The paths of this pixel were not recorded. " : "This pixel has the same bits on both devices, so its paths were not recorded. ";
+  return start + recordedSentence(data);
+}
+
+function commandHint(scene, pixel) {
+  return [" With the options of this comparison, ", element("code", {}, `tandem explain ${scene} --pixel ${pixel.x},${pixel.y}`), " shows them."];
+}
