@@ -15,8 +15,9 @@ namespace tandem::compare {
 /// What became of a path on both devices.
 struct RecordedPath {
   pathtracer::PathId path;
-  /// JSON: an array of {"event": its name, "segment": number, "fields": {name: {"a": value, "b": value, "ulp":
-  /// number}}}, aligned; a or b is null in an event that only the other device has.
+  /// JSON: an array of {"segment": number, "event": name, "fields": {name: {"a": value, "b": value, "ulp": number}}},
+  /// side by side. "b" is absent where it has the bits of a; "only" is "a" or "b" in an event that only this device
+  /// has. "name_a" and "name_b" may say what a value names.
   std::string events;
 };
 

@@ -1,32 +1,42 @@
 // What happened along the paths of a pixel, on both devices.
 
-const notComparable = 0xffffffff;
-
 function valueText(value) {
-  if (value === null || value === undefined) return "";
-  return Array.isArray(value) ? value.map(valueText).join(", ") : String(value);
+  return Array.isArray(value) ? value.map(valueText).join(", ") : value === null ? "none" : String(value);
 }
 
-/** Whether nothing differs in an event. */
+/** Whether a field has other bits on the other device, or only one device has its event. */
+function isDifferent(event, field) {
+  return "only" in event || "b" in field;
+}
+
 function isEqualEvent(event) {
-  return Object.values(event.fields).every((field) => valueText(field.a) === valueText(field.b) && !field.ulp);
+  return !Object.values(event.fields).some((field) => isDifferent(event, field));
+}
+
+/** The value on a device; where b's is left out it is that of a. With what it names in the scene. */
+function fieldCell(event, field, side) {
+  const isThere = !("only" in event) || event.only === side;
+  const shown = side in field ? side : "a";
+  const name = field[`name_${shown}`];
+  return element("td", {className: "value"}, !isThere ? "" : name ? `${valueText(field[shown])}: ${name}` : valueText(field[shown]));
+}
+
+function eventNote(event, count, differing) {
+  if ("only" in event) return `only on ${event.only}`;
+  if (differing === 0) return "the same";
+  return `${differing} of ${countText(count, "field")} ${differing === 1 ? "differs" : "differ"}`;
 }
 
 function eventRows(event, isFirst, showsAll) {
   const fields = Object.entries(event.fields);
-  const differing = fields.filter(([, field]) => valueText(field.a) !== valueText(field.b) || field.ulp);
-  const onlyIn = ["a", "b"].find((side) => fields.length > 0 && fields.every(([, field]) => field[side === "a" ? "b" : "a"] === null));
-  const note = onlyIn ? `only on ${onlyIn}`
-    : differing.length === 0 ? "the same" : `${countText(differing.length, "field")} of ${fields.length} differ${differing.length === 1 ? "s" : ""}`;
-  const rows = [element("tr", {className: `event${isFirst ? " first" : ""}${differing.length > 0 ? " changed" : ""}`},
-    element("th", {scope: "row"}, `segment ${event.segment}: ${event.event}`), element("td", {colSpan: 3}, note))];
+  const differing = fields.filter(([, field]) => isDifferent(event, field));
+  const className = `event${isFirst ? " first" : ""}${differing.length > 0 ? " changed" : ""}`;
+  const rows = [element("tr", {className}, element("th", {scope: "row"}, `segment ${event.segment}: ${event.event}`),
+    element("td", {colSpan: 3}, eventNote(event, fields.length, differing.length)))];
   for (const [name, field] of showsAll ? fields : differing) {
-    const isDifferent = differing.some(([other]) => other === name);
-    const ulp = !isDifferent || field.ulp === null || field.ulp === undefined ? ""
-      : field.ulp >= notComparable ? "—" : field.ulp.toLocaleString("en");
-    rows.push(element("tr", {className: `field${isDifferent ? " changed" : ""}`}, element("th", {scope: "row"}, name),
-      element("td", {className: "value"}, valueText(field.a)), element("td", {className: "value"}, valueText(field.b)),
-      element("td", {className: "value"}, ulp)));
+    rows.push(element("tr", {className: `field${isDifferent(event, field) ? " changed" : ""}`}, element("th", {scope: "row"}, name),
+      fieldCell(event, field, "a"), fieldCell(event, field, "b"),
+      element("td", {className: "value"}, "ulp" in field ? field.ulp.toLocaleString("en") : "")));
   }
   return rows;
 }
