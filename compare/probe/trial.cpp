@@ -27,7 +27,7 @@ std::span<const Trial> trials() {
       {.name = "sheared instance", .arrangement = sheared},
       {.name = "mirrored, back faces culled", .arrangement = mirrored, .flags = ray_flag::cull_back_faces},
       // The second and the third instance are to be met, the first and the last are not.
-      {.name = "instance masks", .arrangement = masked, .mask = 0x92},
+      {.name = "instance mask", .arrangement = masked, .mask = 0x92},
       {.name = "flipped facing", .arrangement = flipped, .flags = ray_flag::cull_back_faces},
       {.name = "culling disabled", .arrangement = unculled, .flags = ray_flag::cull_back_faces},
       {.name = "forced opaque", .arrangement = forced_opaque, .acceptance = 0},

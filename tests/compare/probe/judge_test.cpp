@@ -147,9 +147,9 @@ TEST_CASE("A device that does not heed what a trial asks for is found") {
   CHECK(mismatches("flipped facing", [](Trial& trial, Rays&) { trial.arrangement = Arrangement::plain; }) > 0);
   CHECK(mismatches("forced opaque", [](Trial& trial, Rays&) { trial.arrangement = Arrangement::plain; }) > 0);
   CHECK(mismatches("forced non-opaque", [](Trial& trial, Rays&) { trial.arrangement = Arrangement::plain; }) > 0);
-  CHECK(mismatches("instance masks", [](Trial& trial, Rays&) { trial.mask &= 0xf0; }) == 0);
-  CHECK(mismatches("instance masks", [](Trial& trial, Rays&) { trial.mask = 0xff; }) > 0);
-  CHECK(mismatches("instance masks", [](Trial& trial, Rays&) { trial.mask &= 0x0f; }) > 0);
+  CHECK(mismatches("instance mask", [](Trial& trial, Rays&) { trial.mask &= 0xf0; }) == 0);
+  CHECK(mismatches("instance mask", [](Trial& trial, Rays&) { trial.mask = 0xff; }) > 0);
+  CHECK(mismatches("instance mask", [](Trial& trial, Rays&) { trial.mask &= 0x0f; }) > 0);
   CHECK(mismatches("back faces culled", [](Trial& trial, Rays&) { trial.flags = ray_flag::cull_front_faces; }) > 0);
   CHECK(mismatches("from behind the hit", [](Trial&, Rays& rays) {
           for (ProbeRay& ray : rays) ray.t_min = 0;
