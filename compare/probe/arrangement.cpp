@@ -1,6 +1,5 @@
 #include "compare/probe/arrangement.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -25,7 +24,9 @@ glm::dmat3 scaling(double x, double y, double z) {
   return glm::dmat3(glm::dvec3(x, 0, 0), glm::dvec3(0, y, 0), glm::dvec3(0, 0, z));
 }
 
-Transform transform_of(const glm::dmat3& linear, const glm::dvec3& translation) {
+/// What applies `linear` about `centre`, then moves.
+Transform about(const glm::dvec3& centre, const glm::dmat3& linear, const glm::dvec3& move) {
+  const glm::dvec3 translation = centre + move - linear * centre;
   Transform transform;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column)
@@ -38,41 +39,30 @@ Transform transform_of(const glm::dmat3& linear, const glm::dvec3& translation) 
 }  // namespace
 
 std::vector<Placement> placements(Arrangement arrangement, const pathtracer::Scene& scene) {
-  // No farther than 1: drivers invert these matrices in single precision, and the farther, the worse (Mesa's
-  // util_invert_mat4x4 eliminates with the translation as its pivot).
-  const double radius = 0.5 * glm::length(glm::dvec3(pathtracer::bounds(scene).extent()));
-  const glm::dvec3 move = (radius > 0 ? std::min(radius, 1.0) : 1.0) * glm::dvec3(0.5, -0.25, 0.75);
+  const pathtracer::Bounds bounds = pathtracer::bounds(scene);
+  const glm::dvec3 centre(bounds.centre());
+  double radius = 0.5 * glm::length(glm::dvec3(bounds.extent()));
+  if (!(radius > 0)) radius = 1;
+  // No copy is larger than 1.5 times the scene, so they do not meet.
+  const double apart = 5 * radius;
+  const glm::dvec3 places[] = {{0, 0, 0}, {apart, 0, 0}, {0, apart, 0}, {0, 0, apart}};
+  const glm::dmat3 unmoved(1.0);
   const glm::dmat3 turn = rotation(glm::normalize(glm::dvec3(1, 2, 3)), 0.7);
+  const glm::dmat3 other_turn = rotation(glm::normalize(glm::dvec3(3, -1, 1)), 1.1);
   const glm::dmat3 mirror = turn * scaling(-1, 1, 1);
-  const glm::dmat3 shear = turn * scaling(0.6, 1.5, 1.1) * rotation(glm::normalize(glm::dvec3(3, -1, 1)), 1.1);
-  const Placement plain, turned{.transform = transform_of(turn, move)},
-      mirrored{.transform = transform_of(mirror, -0.5 * move)}, sheared{.transform = transform_of(shear, 0.75 * move)};
-  const auto with_mask = [](Placement placement, std::uint32_t mask) {
-    placement.mask = mask;
-    return placement;
-  };
-  const auto with_flags = [](rhi::InstanceFlags flags) { return std::vector{Placement{.flags = flags}}; };
-  switch (arrangement) {
-    case Arrangement::turned:
-      return {turned};
-    case Arrangement::mirrored:
-    case Arrangement::build_transform:
-      return {mirrored};
-    case Arrangement::sheared:
-      return {sheared};
-    case Arrangement::masked:
-      return {with_mask(plain, 0x01), with_mask(turned, 0x80), with_mask(mirrored, 0x10), with_mask(sheared, 0x0c)};
-    case Arrangement::flipped:
-      return with_flags(rhi::InstanceFlags::triangle_flip_facing);
-    case Arrangement::unculled:
-      return with_flags(rhi::InstanceFlags::triangle_facing_cull_disable);
-    case Arrangement::forced_opaque:
-      return with_flags(rhi::InstanceFlags::force_opaque);
-    case Arrangement::forced_no_opaque:
-      return with_flags(rhi::InstanceFlags::force_no_opaque);
-    default:
-      return {plain};
-  }
+
+  if (arrangement == Arrangement::instances)
+    return {{.mask = 0x01},
+            {.transform = about(centre, turn, places[1]), .mask = 0x80},
+            {.transform = about(centre, mirror, places[2]), .mask = 0x10},
+            {.transform = about(centre, turn * scaling(0.6, 1.5, 1.1) * other_turn, places[3]), .mask = 0x0c}};
+  if (arrangement == Arrangement::instance_flags)
+    return {{.flags = rhi::InstanceFlags::triangle_flip_facing},
+            {.transform = about(centre, unmoved, places[1]), .flags = rhi::InstanceFlags::triangle_facing_cull_disable},
+            {.transform = about(centre, unmoved, places[2]), .flags = rhi::InstanceFlags::force_opaque},
+            {.transform = about(centre, unmoved, places[3]), .flags = rhi::InstanceFlags::force_no_opaque}};
+  if (is_transformed_at_build(arrangement)) return {{.transform = about(centre, mirror, glm::dvec3(0.5 * radius))}};
+  return {Placement{}};
 }
 
 std::uint32_t custom_index(std::uint32_t placement, bool spheres) {

@@ -11,20 +11,14 @@ namespace tandem::compare {
 
 /// How the scene's geometry is put into acceleration structures.
 enum class Arrangement {
-  plain,             ///< once, where it is
-  turned,            ///< once, turned and moved
-  mirrored,          ///< once, mirrored too
-  sheared,           ///< once, its axes not even perpendicular any more
-  masked,            ///< all four of these, under masks of their own
-  flipped,           ///< plain, with InstanceFlags::triangle_flip_facing
-  unculled,          ///< plain, with InstanceFlags::triangle_facing_cull_disable
-  forced_opaque,     ///< plain, with InstanceFlags::force_opaque
-  forced_no_opaque,  ///< plain, with InstanceFlags::force_no_opaque
-  refitted,          ///< plain, its bottom levels built with all primitives elsewhere, then updated
-  moved,             ///< plain, its top level built with everything elsewhere and switched off, then updated
-  build_transform,   ///< triangles only, moved and mirrored when they are built
-  without_indices,   ///< plain, its triangles without an index buffer
-  compacted,         ///< plain, its bottom levels compacted
+  plain,            ///< once, where it is
+  instances,        ///< four times, side by side: where it is, turned, mirrored, sheared, under masks of their own
+  instance_flags,   ///< likewise, but only moved; each with a flag
+  refitted,         ///< built with all primitives elsewhere, then updated
+  moved,            ///< as plain, its top level built with everything elsewhere and switched off, then updated
+  build_transform,  ///< triangles only, moved and mirrored when they are built
+  without_indices,  ///< plain, its triangles without an index buffer
+  compacted,        ///< plain, its bottom levels compacted
 };
 
 /// A row-major 3x4 matrix, as rhi::InstanceDesc has it.
@@ -39,7 +33,7 @@ struct Placement {
   rhi::InstanceFlags flags = rhi::InstanceFlags::none;
 };
 
-/// @param scene with finite positions
+/// @param scene with finite positions; its bounds decide how far apart copies are
 std::vector<Placement> placements(Arrangement arrangement, const pathtracer::Scene& scene);
 
 /// Whether the triangles of the arrangement are transformed as they are built, and its instance is not.

@@ -87,7 +87,7 @@ std::vector<ProbeRay> rays_of(const Trial& trial, std::span<const PathRay> rays,
   std::vector<ProbeRay> asked;
   asked.reserve(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const AffineMap& map = maps[i % maps.size()];
+    const AffineMap& map = maps[trial.target == each_in_turn ? i % maps.size() : trial.target];
     const pathtracer::TracedRay& ray = rays[i].ray;
     ProbeRay& moved = asked.emplace_back(ProbeRay{.origin = glm::vec3(map.point(glm::dvec3(ray.origin))),
                                                   .t_min = 0,

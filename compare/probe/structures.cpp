@@ -225,7 +225,7 @@ ProbeStructures::Built ProbeStructures::build(Arrangement arrangement) {
   if (arrangement == Arrangement::moved) {
     desc.flags = rhi::BuildFlags::allow_update;
     std::vector<rhi::InstanceDesc> others;
-    const Transform away = placements(Arrangement::turned, scene_).front().transform;
+    const Transform away = placements(Arrangement::instances, scene_)[1].transform;
     for (std::size_t i = 0; i < instances.size(); ++i) {
       rhi::InstanceDesc& other = others.emplace_back(rhi::make_instance(*built.bottom_levels[i], away));
       other.mask = 0;

@@ -32,13 +32,15 @@ enum class Window {
   until_behind   ///< t_max a little behind it, which still counts
 };
 
+inline constexpr std::uint32_t each_in_turn = ~std::uint32_t{0};
 inline constexpr std::uint32_t accept_all = ~std::uint32_t{0};
 inline constexpr std::uint32_t accept_half = accept_all / 2;
 
-/// One way of asking: the same rays, moved along with the placements, at which they are aimed in turn.
+/// One way of asking: the same rays, moved along with the instance that they are aimed at.
 struct Trial {
   const char* name = "";
   Arrangement arrangement = Arrangement::plain;
+  std::uint32_t target = 0;  ///< the placement that rays are aimed at, or each_in_turn
   std::uint32_t flags = ray_flag::none;
   std::uint32_t mask = 0xff;
   std::uint32_t acceptance = accept_all;  ///< a candidate that is not opaque counts if its hash is at most this

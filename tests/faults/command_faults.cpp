@@ -101,35 +101,36 @@ void add_structure_faults(FaultList& faults) {
   bottom_updates.skips_bottom_level_updates = true;
   top_updates.skips_top_level_updates = true;
   faults.add_for_probes("refit-skipped", "updates of a bottom level leave it as it was built", plain_scene,
-                        bottom_updates, "refitted bottom level", "type");
+                        bottom_updates, "refitted bottom level", {"type"});
   faults.add_for_probes("instance-update-skipped", "updates of a top level leave it as it was built", plain_scene,
-                        top_updates, "moved top level", "type");
+                        top_updates, "moved top level", {"type"});
   faults.add_for_probes("instance-transposed", "an instance's rotation is transposed", plain_scene,
                         instances([](rhi::InstanceDesc& instance) {
                           for (int row = 0; row < 3; ++row)
                             for (int column = 0; column < row; ++column)
                               std::swap(instance.object_to_world[row][column], instance.object_to_world[column][row]);
                         }),
-                        "turned instance", "type");
+                        "turned instance", {"type"});
   faults.add_for_probes("mirrored-winding", "a mirrored instance turns its triangles round", plain_scene,
                         instances([](rhi::InstanceDesc& instance) {
                           if (is_mirrored(instance))
                             instance.flags =
                                 (instance.flags ^ std::uint32_t(rhi::InstanceFlags::triangle_flip_facing)) & 0xffu;
                         }),
-                        "mirrored instance", "hit kind");
+                        "mirrored instance", {"hit kind"});
   faults.add_for_probes("instance-mask-forced", "every instance has the mask 0xff", plain_scene,
-                        instances([](rhi::InstanceDesc& instance) { instance.mask = 0xff; }), "instance mask", "type");
+                        instances([](rhi::InstanceDesc& instance) { instance.mask = 0xff; }), "instance mask",
+                        {"type"});
   faults.add_for_probes("cull-disable-lost", "instances cannot switch culling off", transparent_scene,
                         instances_without(rhi::InstanceFlags::triangle_facing_cull_disable), "culling disabled",
-                        "type");
+                        {"type", "geometry", "primitive"});
   faults.add_for_probes("flip-facing-lost", "instances cannot turn their triangles round", plain_scene,
-                        instances_without(rhi::InstanceFlags::triangle_flip_facing), "flipped facing", "type");
+                        instances_without(rhi::InstanceFlags::triangle_flip_facing), "flipped facing", {"type"});
   faults.add_for_probes("force-opaque-lost", "instances cannot make their triangles opaque", transparent_scene,
-                        instances_without(rhi::InstanceFlags::force_opaque), "forced opaque", "type");
+                        instances_without(rhi::InstanceFlags::force_opaque), "forced opaque", {"type"});
   faults.add_for_probes("geometry-transform-ignored", "a geometry's matrix is not applied", plain_scene,
                         triangles([](rhi::TriangleGeometry& geometry) { geometry.transform = {}; }),
-                        "transform at build", "type");
+                        "transform at build", {"type"});
   faults.add_harmless("positions-off", "structures keep positions up to 16 floats off", glass_scene,
                       vertices(slightly_off), Finder::survey);
 }
@@ -140,11 +141,10 @@ void add_dispatch_faults(FaultList& faults) {
   faults.add_for_picture("last-row-lost", "the last row of workgroups does not run", plain_scene, row);
   DeviceEdits stale;
   stale.dispatch = [](DispatchEdit& run, const DispatchEdit* previous) {
-    if (previous != nullptr && previous->push_constants.size() == run.push_constants.size())
-      run.push_constants = previous->push_constants;
+    if (previous != nullptr && previous->size[1] > 1 && run.size[1] > 1) run.push_constants = previous->push_constants;
   };
-  faults.add_for_picture("push-constants-stale", "a dispatch sees the push constants of the one before", plain_scene,
-                         stale);
+  faults.add_for_picture("push-constants-stale", "of two tiles the second sees the push constants of the first",
+                         plain_scene, stale);
   DeviceEdits fill;
   fill.skips_fills = true;
   faults.add_for_picture("fill-skipped", "filling a buffer does nothing", plain_scene, fill);

@@ -45,10 +45,10 @@ void FaultList::add_for_survey(std::string name, std::string meaning, std::strin
 }
 
 void FaultList::add_for_probes(std::string name, std::string meaning, std::string scene, DeviceEdits edits,
-                               std::string trial, std::string field) {
+                               std::string trial, std::vector<std::string> fields) {
   Fault& fault = append(std::move(name), std::move(meaning), std::move(scene), std::move(edits), Finder::probes);
   fault.event = std::move(trial);
-  fault.fields = {std::move(field)};
+  fault.fields = std::move(fields);
 }
 
 void FaultList::add_for_picture(std::string name, std::string meaning, std::string scene, DeviceEdits edits) {

@@ -50,7 +50,7 @@ class FaultList {
   void add_for_survey(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string field);
   /// One that only probes show, and this trial first.
   void add_for_probes(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string trial,
-                      std::string field);
+                      std::vector<std::string> fields);
   /// One that only the picture shows: every path is recorded as it should be.
   void add_for_picture(std::string name, std::string meaning, std::string scene, DeviceEdits edits);
   void add_harmless(std::string name, std::string meaning, std::string scene, DeviceEdits edits, Finder finder);

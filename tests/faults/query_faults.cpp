@@ -160,24 +160,24 @@ std::vector<Fault> query_faults() {
   faults.add_for_probes(
       "t-min-ignored", "a ray begins at its origin", plain_scene,
       operand(t_min_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0.0f); }),
-      "from behind the hit", "type");
+      "from behind the hit", {"type"});
   faults.add_for_probes(
       "mask-ignored", "a ray meets instances that its mask leaves out", plain_scene,
       operand(mask_operand, [](CodeWriter& code, std::uint32_t) { return code.module().constant(0xffu); }),
-      "instance mask", "type");
+      "instance mask", {"type"});
   faults.add_for_probes("cull-flags-inverted", "front faces are culled for back faces and the other way round",
-                        plain_scene, operand(flags_operand, inverted_cull), "back faces culled", "type");
+                        plain_scene, operand(flags_operand, inverted_cull), "back faces culled", {"type"});
   faults.add_for_probes("cull-flags-ignored", "no face is culled", plain_scene, without_flags(cull_facing),
-                        "front faces culled", "type");
+                        "front faces culled", {"type"});
   faults.add_for_probes("opacity-cull-ignored", "neither opaque nor other triangles are culled", plain_scene,
-                        without_flags(cull_opacity), "opaque culled", "type");
+                        without_flags(cull_opacity), "opaque culled", {"type"});
   faults.add_for_probes("opaque-flag-ignored", "a ray's flag that all is opaque does nothing", plain_scene,
-                        without_flags(1), "all opaque", "type");
+                        without_flags(1), "all opaque", {"type"});
   faults.add_for_probes("skip-triangles-ignored", "a ray's flag that skips triangles does nothing", plain_scene,
-                        without_flags(0x100), "triangles skipped", "type");
+                        without_flags(0x100), "triangles skipped", {"type"});
   faults.add_for_probes("object-to-world-transposed", "an instance's rotation is reported transposed", plain_scene,
                         results(spv::OpRayQueryGetIntersectionObjectToWorldKHR, transposed), "turned instance",
-                        "object to world (0, 1)");
+                        {"object to world (0, 1)"});
   faults.add_harmless("first-hit-flag-ignored", "rays that may stop at any hit look for the closest", plain_scene,
                       without_flags(4), Finder::nobody);
   return faults.take();

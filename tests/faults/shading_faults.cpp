@@ -94,7 +94,7 @@ std::vector<Fault> shading_faults() {
   faults.add("hash-without-shift", "the hash of random numbers leaves out its shift", plain_scene,
              shader_edits(edited_results("pcg4d", spv::OpShiftRightLogical, lost)), "camera", {"direction"});
   faults.add("roulette-uncompensated", "paths that survive roulette count no more for it", plain_scene,
-             shader_edits(edited_calls("path_radiance", "det_div(f1;f1;", one)), "segment", {"throughput"}, 4);
+             shader_edits(edited_calls("path_radiance", "det_div(f1;f1;", one)), "segment", {"throughput"}, 3);
   faults.add("refraction-inverted", "the index of refraction is that of the way back", glass_scene,
              shader_edits(edited_returns("relative_index", inverse)), "scatter", {"lobe", "direction"});
   faults.add("fresnel-inverted", "glass reflects what it should transmit", glass_scene,
@@ -106,8 +106,8 @@ std::vector<Fault> shading_faults() {
              1);
   faults.add("offset-lost", "rays start on the surface that they leave", plain_scene,
              shader_edits(edited_returns("offset_distance", zero)), "surface", {"offset"});
-  faults.add("mis-weight-lost", "light samples count in full beside scattered rays", plain_scene,
-             shader_edits(edited_returns("light_sample_weight", one)), "light value", {"weight"});
+  faults.add("mis-weights-swapped", "light samples have the weight of scattered rays", plain_scene,
+             shader_edits(edited_returns("light_sample_weight", complement)), "light value", {"weight"});
   faults.add("texture-not-repeated", "texture coordinates are clamped where they should repeat", transparent_scene,
              shader_edits(edited_results("addressed", spv::OpExtInst, zero)), "ray", {"answer"});
   faults.add_for_picture(
