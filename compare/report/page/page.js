@@ -182,7 +182,8 @@ async function start() {
     viewer.goTo({x: region.x + (region.width - 1) / 2, y: region.y + (region.height - 1) / 2}, 3);
     byId("viewer").scrollIntoView({block: "start"});
   });
-  byId("raw").textContent = byId("numbers").textContent.trim();
+  // As it was before it was made fit for a page.
+  byId("raw").textContent = byId("numbers").textContent.trim().replace(/\\\\|\\u003c/g, (found) => (found.length === 2 ? found : "<"));
   viewer.setMode("slider");
   viewer.fit();
   return {viewer, pixels, numbers, data};

@@ -344,7 +344,7 @@ function createViewer(pixels, names, {isShown, onPoint, onSelect, onChange}) {
   new ResizeObserver(() => (isFitted ? fit() : redraw())).observe(stage);
 
   return {
-    view, fit, zoom, goTo, setMode, swap, set, select, movePointed, redraw,
+    view, fit, zoom, goTo, setMode, swap, set, select, movePointed, draw,
     one: () => zoom(1 / view.scale),
     forgetClasses: () => {
       cache.clear();
