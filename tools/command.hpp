@@ -12,7 +12,7 @@ using Action = std::function<int()>;
 
 namespace exit_code {
 inline constexpr int success = 0;
-inline constexpr int differ = 1;  ///< `tandem diff`, `gallery`, `suite`: the images do not agree
+inline constexpr int differ = 1;  ///< `tandem diff`, `matrix`, `gallery`, `suite`: the images do not agree
 inline constexpr int failed = 1;  ///< `tandem conformance`: a device does not do what it must
 inline constexpr int error = 2;
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
@@ -26,6 +26,7 @@ void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_conformance_command(CLI::App& app, Action& action);
 void add_study_command(CLI::App& app, Action& action);
+void add_matrix_command(CLI::App& app, Action& action);
 void add_suite_command(CLI::App& app, Action& action);
 
 }  // namespace tandem::tools

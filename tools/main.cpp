@@ -26,8 +26,9 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "tandem " TANDEM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit code: 0 success, or the images agree; 1 the images differ (tandem diff, tandem gallery) or a device\n"
-      "fails (tandem conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
+      "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device "
+      "fails\n"
+      "(conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
       "'tandem COMMAND --help' explains a command.");
   Action action;
   add_devices_command(app, action);
@@ -38,6 +39,7 @@ int run(int argc, char** argv) {
   add_bench_command(app, action);
   add_conformance_command(app, action);
   add_study_command(app, action);
+  add_matrix_command(app, action);
   add_suite_command(app, action);
   const char* const hint = "'tandem --help' lists the commands";
   if (argc < 2) return fail(fmt::format("a command is required; {}", hint));
