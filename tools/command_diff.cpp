@@ -98,9 +98,8 @@ int diff(const Options& options) {
     baseline = read_stored_run(options.baseline);
   }
   RenderJob job = load_job(options.render);
-  ComparisonOptions comparison_options = options.comparison;
-  // What an eye sees of a difference is a map on the page.
-  if (!options.report.empty() && !comparison_options.metrics) comparison_options.metrics = compare::MetricSet::all;
+  const ComparisonOptions comparison_options =
+      options.report.empty() ? options.comparison : with_metrics_for_page(options.comparison);
   Comparison comparison =
       prepare(comparison_options, options.render, std::move(job), open_devices(comparison_options, options.render));
   if (baseline) check_same_job(*baseline, comparison.summary, comparison.a.camera(), comparison.a.background());

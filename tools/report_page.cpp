@@ -69,6 +69,11 @@ std::vector<compare::RecordedPath> recorded_paths(Comparison& comparison, const 
 
 }  // namespace
 
+ComparisonOptions with_metrics_for_page(ComparisonOptions options) {
+  if (!options.metrics) options.metrics = compare::MetricSet::all;
+  return options;
+}
+
 std::string report_page(Comparison& comparison, const DiffReport& report) {
   const compare::Classification* const classification = nullptr;
   const compare::Ranking ranking = compare::rank_pixels(report.a.image, report.b.image, classification, ranked_pixels);

@@ -53,8 +53,12 @@ std::string option_text(const Value& place, const Json& value, bool is_flag) {
   place.fail(is_flag ? "must be true or false" : "must be a text, a number, a list of numbers, true or false");
 }
 
-/// Sets an option of `tandem diff` by its long name, with underscores for hyphens.
+/// Sets an option of `tandem diff` by its long name, with underscores for hyphens, or whether there is a report.
 void set_option(SuiteCell& cell, const Value& place, const std::string& key, const Json& value) {
+  if (key == "report") {  // whose folder is the suite's
+    cell.report = place.boolean();
+    return;
+  }
   CLI::App app;
   add_render_options(app, cell.render);
   add_comparison_options(app, cell.comparison);

@@ -18,6 +18,7 @@ struct SuiteCell {
   nlohmann::ordered_json given;  ///< what the suite says of the settings
   RenderOptions render;
   ComparisonOptions comparison;
+  bool report = false;  ///< whether it gets a page of its own
 };
 
 struct Suite {

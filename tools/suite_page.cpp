@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -12,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "compare/report/page_sources.hpp"
 #include "tools/xml_text.hpp"
 
 namespace tandem::tools {
@@ -19,24 +21,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view style = R"(
-:root { color-scheme: light dark; --line: #8884; --good: #1a7f37; --bad: #cf222e; --odd: #9a6700; }
-@media (prefers-color-scheme: dark) { :root { --good: #3fb950; --bad: #ff7b72; --odd: #d29922; } }
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem; }
-h1 { font-size: 1.4rem; margin: 0 0 .3rem; }
-p { margin: .2rem 0; }
-.scroll { overflow-x: auto; margin-top: 1.2rem; }
-table { border-collapse: collapse; }
-th, td { text-align: left; vertical-align: top; padding: .55rem .9rem .55rem 0; border-top: 1px solid var(--line); }
-th { font-weight: 600; }
-td.cell { min-width: 17rem; max-width: 26rem; }
+/// Beside that of the pages of single comparisons.
+constexpr std::string_view suite_style = R"(
+body { max-width: none; }
+td.cell { min-width: 17rem; max-width: 26rem; padding: .6rem 1rem .6rem 0; }
+tbody th { padding-top: .6rem; }
 .pictures { display: flex; gap: .4rem; float: left; margin: 0 .8rem .2rem 0; }
 .pictures img { width: 64px; height: 64px; object-fit: contain; background: #000; image-rendering: pixelated; }
-.state { font-weight: 600; }
-.agree { color: var(--good); } .differ { color: var(--bad); } .failed { color: var(--odd); }
-.small { font-size: .85em; opacity: .8; }
-.numbers { font-variant-numeric: tabular-nums; }
-.reasons { clear: both; margin: .2rem 0 0; padding-left: 1.1rem; }
+.agree { color: var(--good); } .differ, .failed { color: var(--bad); }
+.reasons { clear: both; margin: .2rem 0 0; overflow-wrap: anywhere; }
 )";
 
 std::string base64(std::string_view bytes) {
@@ -68,6 +61,15 @@ std::tuple<int, double> rank(const SuiteResult& result) {
   return {result.agrees() ? 2 : 1, result.json.at("report").at("bit_equal").get<double>()};
 }
 
+/// "3 rounding, 1 edge or vertex tie": pixels by the class of their difference, where they were classified.
+std::string class_counts(const Json& report) {
+  std::vector<std::string> counts;
+  if (report.contains("classification"))
+    for (const auto& [name, count] : report.at("classification").at("pixel_classes").items())
+      if (count.get<std::uint64_t>() > 0) counts.push_back(fmt::format("{} {}", count.get<std::uint64_t>(), name));
+  return fmt::format("{}", fmt::join(counts, ", "));
+}
+
 std::string cell_html(const SuiteResult& result, const std::filesystem::path& folder) {
   const Json& json = result.json;
   const std::string state = string(json, "state");
@@ -79,11 +81,13 @@ std::string cell_html(const SuiteResult& result, const std::filesystem::path& fo
     add("<div class=\"pictures\">{}{}</div>", image(folder / string(json, "picture"), "a: " + string(json, "a")),
         image(folder / string(json, "difference"), "difference"));
   }
-  add("<span class=\"state {}\">{}</span>", state, state);
+  add("<strong class=\"{}\">{}</strong>", state, state);
   if (!result.failed()) {
     const Json& report = json.at("report");
-    add("<br><span class=\"numbers\">{:.4f} % bit-equal</span><br>", 100 * report.at("bit_equal").get<double>());
-    add("<span class=\"small numbers\">{:.0f} ms, {:.0f} ms</span>", report.at("ms_a").get<double>(),
+    add(", {:.4f} % bit-equal", 100 * report.at("bit_equal").get<double>());
+    const std::string classes = class_counts(report);
+    if (!classes.empty()) add("<br>{}", xml_text(classes));
+    add("<br><span class=\"hint\">{:.0f} ms, {:.0f} ms</span>", report.at("ms_a").get<double>(),
         report.at("ms_b").get<double>());
   }
   if (json.contains("page")) add(" <a href=\"{}\">details</a>", xml_text(string(json, "page")));
@@ -135,15 +139,15 @@ std::string suite_page(const std::string& title, const std::vector<SuiteResult>&
     fmt::format_to(std::back_inserter(html), format, std::forward<Arguments>(arguments)...);
   };
   add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-      xml_text(title), style);
+      "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+      xml_text(title), compare::page_style(), suite_style);
   add("<p>{} comparisons: <span class=\"agree\">{} agree</span>, <span class=\"differ\">{} differ</span>, "
-      "<span class=\"failed\">{} failed</span>. Scenes are in order, the worst first.</p>\n",
+      "<span class=\"failed\">{} failed</span>. The worst scenes come first; times are those of a and of b.</p>\n",
       results.size(), totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>());
-  for (const std::string& sentence : device_sentences(results)) add("<p class=\"small\">{}</p>\n", xml_text(sentence));
-  add("<p class=\"small\">tandem {}</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>scene</th>", TANDEM_VERSION);
+  for (const std::string& sentence : device_sentences(results)) add("<p class=\"hint\">{}</p>\n", xml_text(sentence));
+  add("<p class=\"hint\">tandem {}</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>scene</th>", TANDEM_VERSION);
   for (const auto& [a, b, settings] : columns)
-    add("<th>{} against {}<br><span class=\"small\">{}</span></th>", xml_text(a), xml_text(b), xml_text(settings));
+    add("<th>{} against {}<br><span class=\"hint\">{}</span></th>", xml_text(a), xml_text(b), xml_text(settings));
   html += "</tr></thead>\n<tbody>\n";
   for (const auto& [worst, scene] : order) {
     add("<tr><th>{}</th>", xml_text(scene));

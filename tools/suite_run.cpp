@@ -15,6 +15,7 @@
 #include "tools/interruption.hpp"
 #include "tools/output_file.hpp"
 #include "tools/program_hash.hpp"
+#include "tools/report_page.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -32,8 +33,8 @@ std::optional<Json> read_result(const std::filesystem::path& folder, const std::
   // Through text, so that both have numbers as a file has them.
   if (!json.is_object() || json.value("key", Json()) != Json::parse(json_text(key))) return std::nullopt;
   if (json.value("state", "") == "failed") return std::nullopt;
-  for (const char* picture : {"picture", "difference"})
-    if (!std::filesystem::exists(folder / json.value(picture, ""))) return std::nullopt;
+  for (const char* file_key : {"picture", "difference", "page"})
+    if (json.contains(file_key) && !std::filesystem::exists(folder / json.value(file_key, ""))) return std::nullopt;
   return json;
 }
 
@@ -66,9 +67,10 @@ rhi::DeviceHandle SuiteRun::device(const std::string& name, const RenderOptions&
   return device;
 }
 
-SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report) {
+SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report, std::string& page) {
   RenderJob job = load_job(cell.render);
-  const ComparisonOptions& options = cell.comparison;
+  ComparisonOptions options = cell.comparison;
+  if (cell.report) options = with_metrics_for_page(options);
   ComparedDevices devices{.a = device(options.a, cell.render), .b = device(options.b, cell.render), .arbiter = {}};
   if (!options.arbiter.empty()) devices.arbiter = device(options.arbiter, cell.render);
   const Json key = key_of(cell, job, devices, program_);
@@ -77,19 +79,23 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report) {
       return {.json = std::move(*earlier), .taken_over = true};
   Comparison comparison = prepare(options, cell.render, std::move(job), std::move(devices));
   report = compare_devices(comparison);
+  if (cell.report) page = report_page(comparison, report);
   const std::vector<std::string> reasons = failures(report);
-  return {.json = {{"state", reasons.empty() ? "agree" : "differ"},
-                   {"reasons", reasons},
-                   {"report", to_json(report)},
-                   {"picture", cell_path(cell, ".png").string()},
-                   {"difference", cell_path(cell, "_difference.png").string()},
-                   {"key", key}}};
+  SuiteResult result{.json = {{"state", reasons.empty() ? "agree" : "differ"},
+                              {"reasons", reasons},
+                              {"report", to_json(report)},
+                              {"picture", cell_path(cell, ".png").string()},
+                              {"difference", cell_path(cell, "_difference.png").string()},
+                              {"key", key}}};
+  if (cell.report) result.json["page"] = (cell_path(cell, "") / "index.html").string();
+  return result;
 }
 
 SuiteResult SuiteRun::run(const SuiteCell& cell) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point started = Clock::now();
   DiffReport report;
+  std::string page;
   SuiteResult result;
   const auto fail = [&](const std::string& sentence) {
     // Whatever state they are in.
@@ -99,7 +105,7 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
     result.json = {{"state", "failed"}, {"reasons", {sentence}}, {"report", nullptr}};
   };
   try {
-    result = try_run(cell, report);
+    result = try_run(cell, report, page);
   } catch (const Interrupted&) {
     throw;
   } catch (const std::bad_alloc&) {
@@ -120,6 +126,10 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
     };
     write("picture", report.a.image);
     write("difference", compare::heat_map(report.a.image, report.b.image));
+    if (cell.report) {
+      const OutputFolder folder(folder_ / cell_path(cell, ""));
+      write_text(folder.path() / "index.html", page);
+    }
   }
   write_text(folder_ / cell_path(cell, ".json"), json_text(result.json));
   return result;

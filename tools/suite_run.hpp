@@ -17,7 +17,8 @@ namespace tandem::tools {
 /// What came of a cell. `json` is its file, and all that a page or a report needs:
 /// name, scene, a, b, settings (name), state (agree, differ, failed), reasons (or why there is no verdict), seconds (of
 /// the whole cell), report (of `tandem diff`; null when it failed), picture and difference (files, relative to the
-/// folder; likewise), key (of all that the result depends on).
+/// folder; likewise), page (its own, where it was asked for),
+/// key (of all that the result depends on).
 struct SuiteResult {
   nlohmann::ordered_json json;
   bool taken_over = false;  ///< from an earlier run
@@ -39,7 +40,7 @@ class SuiteRun {
 
  private:
   rhi::DeviceHandle device(const std::string& name, const RenderOptions& options);
-  SuiteResult try_run(const SuiteCell& cell, DiffReport& report);
+  SuiteResult try_run(const SuiteCell& cell, DiffReport& report, std::string& page);
 
   std::filesystem::path folder_;
   bool fresh_;

@@ -55,13 +55,15 @@ bool contains(const std::string& text, const std::string& part) { return text.fi
 
 TEST_CASE("a suite compares every scene on every pair of devices under every settings") {
   const Sandbox folder;
+  Json reported = tiny;
+  reported["report"] = true;
   const Json seeded = {{"name", "seed 3"}, {"size", "8x8"}, {"seed", 3}, {"nee", false}, {"roulette", true}};
   const Json wide = {
       {"file", "other.obj"}, {"name", "wide"}, {"settings", {{"size", "16x8"}, {"camera_position", {278, 273, -900}}}}};
   const Outcome outcome = folder.run({{"title", "Two <boxes>"},
                                       {"scenes", {"box.obj", wide}},
                                       {"devices", Json::parse(R"([["cpu", "cpu"], ["cpu", "cpu-exact"]])")},
-                                      {"settings", {tiny, seeded}}},
+                                      {"settings", {reported, seeded}}},
                                      {"--json", "x.json", "--junit", "x.xml"});
   CHECK(outcome.errors == "");
   CHECK(outcome.exit_code == 0);
@@ -90,6 +92,9 @@ TEST_CASE("a suite compares every scene on every pair of devices under every set
   CHECK(contains(page, "src=\"data:image/png;base64,iVBORw0KGgo"));
   // It needs no other file.
   CHECK_FALSE(contains(page, "http"));
+  CHECK_FALSE(contains(page, "<link"));
+  CHECK(contains(page, "<a href=\"cells/box-cpu-cpu-tiny/index.html\">"));
+  CHECK(contains(read_text(folder.path() / "out/cells/box-cpu-cpu-tiny/index.html"), "<!doctype html>"));
   std::size_t pictures = 0;
   for (std::size_t at = page.find("<img"); at != std::string::npos; at = page.find("<img", at + 1)) ++pictures;
   CHECK(pictures == 2 * 8);
