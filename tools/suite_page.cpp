@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 /// Beside that of the pages of single comparisons.
 constexpr std::string_view suite_style = R"(
 body { max-width: none; }
-td.cell { min-width: 17rem; max-width: 26rem; padding: .6rem 1rem .6rem 0; }
+td.cell { min-width: 20rem; max-width: 26rem; padding: .6rem 1rem .6rem 0; }
 tbody th { padding-top: .6rem; }
 .pictures { display: flex; gap: .4rem; float: left; margin: 0 .8rem .2rem 0; }
 .pictures img { width: 64px; height: 64px; object-fit: contain; background: #000; image-rendering: pixelated; }
