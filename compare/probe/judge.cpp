@@ -28,11 +28,15 @@ bool anything_counts(std::span<const ProbeHit> hits) {
   return std::any_of(hits.begin(), hits.end(), [](const ProbeHit& hit) { return hit.counts; });
 }
 
-/// Whether the answer names a primitive that may be the first.
+/// Whether t lies where the ray meets the hit's surface.
+bool is_at(const Encounter& encounter, double t) { return t >= encounter.t_low && t <= encounter.t_high; }
+
+/// Whether the answer names a primitive that may be the first, and where the ray meets it.
 bool is_right_primitive(const Trial& trial, std::span<const ProbeHit> hits, const ProbeAnswer& answer) {
   if (answer.type == AnswerType::miss) return !anything_counts(hits);
   if (trial.any_hit) return answer.type != AnswerType::missing && !hits.empty();
-  return find(hits, answer) != nullptr;
+  const ProbeHit* const hit = find(hits, answer);
+  return hit && is_at(hit->encounter, answer.t);
 }
 
 bool is_within(double value, double expected, double error) { return std::abs(value - expected) <= error; }
@@ -68,7 +72,7 @@ bool is_right_field(std::span<const ProbeInstance> instances, const ProbeRay& ra
       if (!encounter.front_face) return bits == hit_kind::front || bits == hit_kind::back;
       return bits == (*encounter.front_face ? hit_kind::front : hit_kind::back);
     case offsetof(ProbeAnswer, t):
-      return value >= encounter.t_low && value <= encounter.t_high;
+      return is_at(encounter, value);
     default:
       break;
   }

@@ -115,6 +115,29 @@ TEST_CASE("A field that is off is named, and one that is a unit in the last plac
   }
 }
 
+TEST_CASE("A ray that starts on a surface may meet it, but not farther off than rounding") {
+  pathtracer::Scene scene;
+  scene.name = "two floors";
+  scene.positions = {{-1, -1, 1}, {3, -1, 1}, {-1, 3, 1}, {-1, -1, 0}, {3, -1, 0}, {-1, 3, 0}};
+  scene.triangles = {{.vertices = {0, 1, 2}, .material = 0}, {.vertices = {3, 4, 5}, .material = 0}};
+  const Trial& trial = trial_named("plain");
+  const ProbeReference reference(scene);
+  const std::vector<ProbeInstance> instances = reference.instances(trial.arrangement);
+  const ProbeRay ray = {.origin = {0.25f, 0.5f, 1}, .t_min = 0, .direction = {0, 0, -1}, .t_max = 10};
+  const std::vector<ProbeHit> hits = reference.hits(trial, instances, ray);
+  ProbeAnswer far, near;
+  far.type = near.type = AnswerType::triangle;
+  far.geometry = 1;
+  far.t = 1;
+  near.t = 1e-7f;
+  CHECK(judge(trial, instances, ray, hits, far, near).kind == DifferenceClass::coincident_geometry);
+  near.t = 1e-3f;
+  const AnswerJudgement judgement = judge(trial, instances, ray, hits, far, near);
+  CHECK(judgement.kind == DifferenceClass::mismatch);
+  CHECK(judgement.ruling == Ruling::a_right);
+  CHECK(std::string(judgement.field->name) == "geometry");
+}
+
 TEST_CASE("An answer that was not given is a mismatch") {
   const pathtracer::Scene scene = test::soup(200, 30, 4);
   for (const char* name : {"plain", "terminate on first hit"}) {
