@@ -1,10 +1,23 @@
 #include "tools/comparison.hpp"
 
+#include <filesystem>
 #include <utility>
 
+#include "pathtracer/error.hpp"
 #include "tools/option_values.hpp"
 
 namespace tandem::tools {
+namespace {
+
+compare::Thresholds thresholds_for(const ComparisonOptions& options, const std::filesystem::path& scene) {
+  compare::Thresholds thresholds = compare::thresholds_of(scene, options.usual_thresholds);
+  apply(options.thresholds, thresholds);
+  if (thresholds.tier == compare::Tier::statistical && !options.arbiter.empty())
+    throw pathtracer::Error("--arbiter means nothing in tier statistical, where every path of a and b is another");
+  return thresholds;
+}
+
+}  // namespace
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_trace_form(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
@@ -23,6 +36,7 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_whole_number(command, "--probe-rays", options.probe_rays, 1, std::uint64_t{1} << 19,
                    "Rays to probe with at most, of paths all over the picture");
   add_threshold_options(command, options.thresholds);
+  add_batch_options(command, options.batches);
 }
 
 compare::Thresholds thresholds_for(const ComparisonOptions& options, const RenderOptions& render_options) {
@@ -41,6 +55,7 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
 
 Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
                    ComparedDevices devices) {
+  compare::Thresholds thresholds = thresholds_for(options, render_options.scene);
   const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace) {
     return pathtracer::Renderer(device, job.scene, job.settings, trace);
   };
@@ -67,12 +82,19 @@ DiffReport compare_devices(Comparison& comparison) {
   DiffReport report;
   report.job = comparison.summary;
   report.thresholds = comparison.thresholds;
-  report.a = render(comparison.a, comparison.devices.a->info(), job.samples);
-  report.b = render(comparison.b, comparison.devices.b->info(), job.samples);
-  report.metrics = compare::measure(report.a.image, report.b.image);
+  compare::Evidence evidence;
+  if (report.thresholds.tier == compare::Tier::statistical) {
+    report.statistics = compare_batches(comparison.a, comparison.devices.a->info(), comparison.b,
+                                        comparison.devices.b->info(), job, options.batches,
+                                        report.thresholds.limit(compare::RuleMetric::bias_p_value), report.a, report.b);
+    evidence.bias = bias_findings(*report.statistics);
+  } else {
+    report.a = render(comparison.a, comparison.devices.a->info(), job.samples);
+    report.b = render(comparison.b, comparison.devices.b->info(), job.samples);
+  }
+  evidence.metrics = report.metrics = compare::measure(report.a.image, report.b.image);
   report.detailed_metrics =
       compare::measure_in_detail(report.a.image, report.b.image, options.metrics.value_or(compare::MetricSet::basic));
-  compare::Evidence evidence{.metrics = report.metrics};
   if (options.probe) {
     report.probes = compare::probe(*comparison.devices.a, *comparison.devices.b, job.scene,
                                    compare::path_rays(comparison.a, options.probe_rays), comparison.a.trace(),

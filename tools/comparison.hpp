@@ -10,6 +10,7 @@
 #include "pathtracer/renderer.hpp"
 #include "pathtracer/trace_form.hpp"
 #include "rhi/device.hpp"
+#include "tools/batches.hpp"
 #include "tools/diff_report.hpp"
 #include "tools/job_report.hpp"
 #include "tools/render_options.hpp"
@@ -30,7 +31,8 @@ struct ComparisonOptions {
   std::optional<compare::MetricSet> metrics;  ///< none: basic
   compare::Thresholds usual_thresholds;       ///< where neither `thresholds` nor the scene's file says otherwise
   ThresholdOptions thresholds;
-  std::string arbiter;  ///< the device that judges pixels that differ; empty: nobody is asked
+  BatchOptions batches;  ///< of tier statistical
+  std::string arbiter;   ///< the device that judges pixels that differ; empty: nobody is asked
   std::uint64_t arbiter_pixels = 1000;
   bool probe = false;               ///< whether the scene's geometry is asked in other ways too
   std::uint64_t probe_rays = 2048;  ///< in each of the trials, at most

@@ -82,6 +82,7 @@ std::string table(const DiffReport& report) {
   line("tier", compare::name(report.verdict.tier));
   line("verdict", compare::name(report.verdict));
   for (const std::string& reason : report.verdict.reasons) line("", reason);
+  if (report.statistics) text += '\n' + table(*report.statistics);
   if (report.examination) text += '\n' + table(*report.examination, report.arbiter);
   if (report.probes) text += '\n' + table(*report.probes);
   if (report.baseline) text += '\n' + table(*report.baseline);
@@ -125,6 +126,7 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
     if (compare::applies(rule.metric, report.thresholds.tier))
       json["thresholds"][compare::name(rule.metric)] = {{"limit", rule.limit}, {"reason", rule.reason}};
   if (report.detailed_metrics) json["metrics"] = to_json(*report.detailed_metrics);
+  if (report.statistics) json["statistics"] = to_json(*report.statistics);
   if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
   if (report.probes) json["probes"] = to_json(*report.probes);
   if (report.baseline) json["baseline"] = to_json(*report.baseline);

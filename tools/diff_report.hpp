@@ -13,6 +13,7 @@
 #include "tools/baseline.hpp"
 #include "tools/job_report.hpp"
 #include "tools/rendering.hpp"
+#include "tools/statistics_report.hpp"
 
 namespace tandem::tools {
 
@@ -25,6 +26,7 @@ struct DiffReport {
   std::optional<compare::DetailedMetrics> detailed_metrics;
   compare::Thresholds thresholds;
   compare::Verdict verdict;
+  std::optional<Statistics> statistics;             ///< in tier statistical; a and b are then means of batches
   std::string arbiter;                              ///< the device that judged; empty: none was asked
   std::optional<compare::Examination> examination;  ///< of the pixels that differ, where an arbiter was asked
   std::optional<compare::Probing> probes;           ///< where it was asked to probe

@@ -9,10 +9,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "compare/statistics/means.hpp"
 #include "pathtracer/lights.hpp"
 #include "tests/shaders/light_samples.hpp"
 #include "tests/statistics/chi_square.hpp"
-#include "tests/statistics/means.hpp"
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;
@@ -82,7 +82,7 @@ double polygon_irradiance(std::span<const glm::vec3> vertices, const glm::dvec3&
 }
 
 void check_mean(const std::vector<double>& values, double truth) {
-  const test::Mean mean = test::mean_of(values);
+  const compare::Mean mean = compare::mean_of(values);
   CAPTURE(truth);
   CAPTURE(mean.value);
   CAPTURE(mean.standard_error);

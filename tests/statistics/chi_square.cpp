@@ -6,7 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "tests/statistics/distributions.hpp"
+#include "compare/statistics/distributions.hpp"
 
 namespace tandem::test {
 namespace {
@@ -57,7 +57,7 @@ ChiSquare chi_square(std::span<const double> counts, std::span<const double> exp
   for (const Bin& bin : bins)
     result.statistic += (bin.count - bin.expected) * (bin.count - bin.expected) / bin.expected;
   result.freedom = static_cast<double>(bins.size() - 1);
-  result.p_value = chi_square_p_value(result.statistic, result.freedom);
+  result.p_value = compare::chi_square_p_value(result.statistic, result.freedom);
   return result;
 }
 

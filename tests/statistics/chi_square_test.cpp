@@ -8,7 +8,6 @@
 #include <doctest/doctest.h>
 
 #include "tests/shaders/random_source.hpp"
-#include "tests/statistics/distributions.hpp"
 
 using namespace tandem;
 
@@ -22,34 +21,6 @@ std::vector<double> binned(test::RandomSource& random, std::size_t samples, std:
 }
 
 }  // namespace
-
-TEST_CASE("Incomplete gamma and beta functions have their closed forms") {
-  for (const double x : {0.01, 0.5, 1.0, 2.0, 7.5, 30.0, 300.0}) {
-    CHECK(test::regularised_upper_gamma(1.0, x) == doctest::Approx(std::exp(-x)).epsilon(1e-10));
-    CHECK(test::regularised_upper_gamma(0.5, x) == doctest::Approx(std::erfc(std::sqrt(x))).epsilon(1e-10));
-    CHECK(test::regularised_upper_gamma(3.0, x) ==
-          doctest::Approx(std::exp(-x) * (1.0 + x + 0.5 * x * x)).epsilon(1e-10));
-  }
-  CHECK(test::regularised_upper_gamma(2.0, 0.0) == 1.0);
-  for (const double x : {0.0, 0.1, 0.3, 0.5, 0.9, 0.999, 1.0}) {
-    CHECK(test::regularised_beta(1.0, 1.0, x) == doctest::Approx(x).epsilon(1e-10));
-    CHECK(test::regularised_beta(3.0, 1.0, x) == doctest::Approx(x * x * x).epsilon(1e-10));
-    CHECK(test::regularised_beta(0.5, 0.5, x) ==
-          doctest::Approx(2.0 / std::numbers::pi * std::asin(std::sqrt(x))).epsilon(1e-10));
-  }
-}
-
-TEST_CASE("p-values are those of the tables") {
-  // Quantiles of NIST/SEMATECH, Handbook of Statistical Methods, 1.3.6.7, to the digits printed there.
-  CHECK(test::chi_square_p_value(18.307, 10) == doctest::Approx(0.05).epsilon(1e-4));
-  CHECK(test::chi_square_p_value(149.449, 100) == doctest::Approx(0.001).epsilon(1e-4));
-  CHECK(test::normal_p_value(-1.959964) == doctest::Approx(0.05).epsilon(1e-5));
-  CHECK(test::student_p_value(2.228139, 10) == doctest::Approx(0.05).epsilon(1e-5));
-  CHECK(test::student_p_value(-12.7062, 1) == doctest::Approx(0.05).epsilon(1e-5));
-  CHECK(test::sidak(0.5, 2) == doctest::Approx(0.75));
-  CHECK(test::sidak(1e-12, 1000) == doctest::Approx(1e-9));
-  CHECK(test::sidak(1.0, 3) == 1.0);
-}
 
 TEST_CASE("p-values of samples with the right density are uniform") {
   test::RandomSource random(1);

@@ -1,11 +1,11 @@
-#include "tests/statistics/distributions.hpp"
+#include "compare/statistics/distributions.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-namespace tandem::test {
+namespace tandem::compare {
 namespace {
 
 constexpr double negligible = 1e-15;
@@ -93,4 +93,4 @@ double sidak(double smallest, std::size_t count) {
   return -std::expm1(static_cast<double>(count) * std::log1p(-smallest));
 }
 
-}  // namespace tandem::test
+}  // namespace tandem::compare

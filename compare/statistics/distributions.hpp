@@ -3,7 +3,7 @@
 #include <cstddef>
 
 /// Probabilities with which chance alone gives a statistic at least as extreme: p-values.
-namespace tandem::test {
+namespace tandem::compare {
 
 /// The regularised upper incomplete gamma function Q(a, x), a > 0, x >= 0 (NIST Digital Library of Mathematical
 /// Functions, 8.2.4). Relative error below 1e-10 where the result is above 1e-300.
@@ -26,4 +26,4 @@ double student_p_value(double t, double freedom);
 /// judged by.
 double sidak(double smallest, std::size_t count);
 
-}  // namespace tandem::test
+}  // namespace tandem::compare
