@@ -54,9 +54,10 @@ TANDEM_DEVICE_TEST("A device under 50 other seeds is accepted 50 times") {
 
 TANDEM_DEVICE_TEST("A tile that is brighter by 2 % is found, where many samples leave little noise") {
   constexpr std::uint32_t count = 32, tile = 8;
-  // Direct light alone, which has the least noise.
+  // Direct light alone, on the back wall above the blocks, which nothing shades.
+  const pathtracer::Camera camera{.position = {278, 450, 100}, .target = {278, 430, 559}, .vertical_fov = 20};
   pathtracer::Renderer renderer =
-      renderer_of(device, {.width = 16, .height = 16, .max_depth = 2, .planned_samples = 64});
+      renderer_of(device, {.width = 16, .height = 16, .max_depth = 2, .camera = camera, .planned_samples = 8});
   const compare::BatchedEstimate a = compare::batched(batches(renderer, 0, count), tile);
   const std::vector<pathtracer::Image> b = batches(renderer, 100, count);
   CHECK(compare::test_bias(a, compare::batched(b, tile)).p_value > level);
@@ -65,5 +66,4 @@ TANDEM_DEVICE_TEST("A tile that is brighter by 2 % is found, where many samples 
   CHECK(biased.p_value < level);
   CHECK(biased.worst_tile.tile.left == lower_left.left);
   CHECK(biased.worst_tile.tile.top == lower_left.top);
-  MESSAGE(biased.p_value);
 }

@@ -18,25 +18,32 @@ using test::scaled;
 
 constexpr double level = 1e-3;
 
-/// How many of `trials` p-values of two estimates of the same noise lie below `below`.
-int alarms(NoiseKind kind, std::uint32_t batches, int trials, double below) {
+/// How many of `trials` p-values of two estimates of the same means lie below `below`.
+int alarms(NoiseKind a, NoiseKind b, std::uint32_t batches, int trials, double below) {
   int count = 0;
   for (int i = 0; i < trials; ++i) {
     const auto seed = static_cast<std::uint32_t>(2 * i);
     const BiasTest test =
-        test_bias(batched(noise(kind, seed, 16, batches), 8), batched(noise(kind, seed + 1, 16, batches), 8));
+        test_bias(batched(noise(a, seed, 16, batches), 8), batched(noise(b, seed + 1, 16, batches), 8));
     count += test.p_value < below ? 1 : 0;
   }
   return count;
 }
 
 TEST_CASE("estimates of the same picture fail as often as the p-value says, or less, with fireflies too") {
+  constexpr NoiseKind uniform = NoiseKind::uniform, fireflies = NoiseKind::fireflies;
   // Of 1000 trials at 0.05 fewer than 50 are expected to fail; 70 is three standard deviations more.
-  CHECK(alarms(NoiseKind::uniform, 8, 1000, 0.05) <= 70);
-  CHECK(alarms(NoiseKind::fireflies, 8, 1000, 0.05) <= 70);
-  CHECK(alarms(NoiseKind::fireflies, 32, 300, 0.05) <= 26);
+  CHECK(alarms(uniform, uniform, 8, 1000, 0.05) <= 70);
+  CHECK(alarms(fireflies, fireflies, 8, 1000, 0.05) <= 70);
+  CHECK(alarms(fireflies, fireflies, 32, 300, 0.05) <= 26);
   // But not never: the tests are many and partly dependent, which may cost a factor of some three.
-  CHECK(alarms(NoiseKind::uniform, 8, 1000, 0.05) >= 10);
+  CHECK(alarms(uniform, uniform, 8, 1000, 0.05) >= 10);
+}
+
+TEST_CASE("estimates of which one is lit by rare events fail no more often") {
+  // Ten events are expected in a tile; where there are far fewer, their number alone does not say how few they are.
+  CHECK(alarms(NoiseKind::uniform, NoiseKind::rare, 16, 300, 0.05) <= 26);
+  CHECK(alarms(NoiseKind::rare, NoiseKind::uniform, 16, 300, 0.001) <= 3);
 }
 
 TEST_CASE("the tile and the channel that differ are named, and so is the whole picture") {

@@ -9,6 +9,7 @@ namespace {
 
 double sample(NoiseKind kind, RandomSource& random) {
   if (kind == NoiseKind::uniform) return random.uniform(0.8, 1.2);
+  if (kind == NoiseKind::rare) return random.uniform(0, 1) < 0.01 ? 100 : 0;
   const double base = random.uniform(0, 1);
   if (random.uniform(0, 1) >= 0.001) return base;
   constexpr double shape = 1.5;
