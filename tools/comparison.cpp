@@ -1,23 +1,11 @@
 #include "tools/comparison.hpp"
 
-#include <filesystem>
 #include <utility>
 
 #include "pathtracer/error.hpp"
 #include "tools/option_values.hpp"
 
 namespace tandem::tools {
-namespace {
-
-compare::Thresholds thresholds_for(const ComparisonOptions& options, const std::filesystem::path& scene) {
-  compare::Thresholds thresholds = compare::thresholds_of(scene, options.usual_thresholds);
-  apply(options.thresholds, thresholds);
-  if (thresholds.tier == compare::Tier::statistical && !options.arbiter.empty())
-    throw pathtracer::Error("--arbiter means nothing in tier statistical, where every path of a and b is another");
-  return thresholds;
-}
-
-}  // namespace
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_trace_form(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
@@ -42,6 +30,8 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
 compare::Thresholds thresholds_for(const ComparisonOptions& options, const RenderOptions& render_options) {
   compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
   apply(options.thresholds, thresholds);
+  if (thresholds.tier == compare::Tier::statistical && !options.arbiter.empty())
+    throw pathtracer::Error("--arbiter means nothing in tier statistical, where every path of a and b is another");
   return thresholds;
 }
 
@@ -55,7 +45,7 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
 
 Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
                    ComparedDevices devices) {
-  compare::Thresholds thresholds = thresholds_for(options, render_options.scene);
+  compare::Thresholds thresholds = thresholds_for(options, render_options);
   const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace) {
     return pathtracer::Renderer(device, job.scene, job.settings, trace);
   };
@@ -67,7 +57,7 @@ Comparison prepare(const ComparisonOptions& options, const RenderOptions& render
   if (devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
   JobSummary job_summary = summary(render_options, job);
   return {.options = options,
-          .thresholds = thresholds_for(options, render_options),
+          .thresholds = std::move(thresholds),
           .summary = std::move(job_summary),
           .job = std::move(job),
           .devices = std::move(devices),
