@@ -42,7 +42,7 @@ foreach(header rhi_cpu/device.hpp rhi_cpu/precompiled_kernel.hpp rhi_vulkan/devi
 endforeach()
 
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${TANDEM_INSTALL_DATA}"
-        FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.rgen" PATTERN "*.rmiss" PATTERN "*.rchit" PATTERN "*.rahit")
+        FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.rgen" PATTERN "*.rmiss" PATTERN "*.rchit" PATTERN "*.rahit" PATTERN "*.rint")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/scenes" DESTINATION "${TANDEM_INSTALL_DATA}"
         FILES_MATCHING PATTERN "*.obj" PATTERN "*.mtl" PATTERN "*.png" PATTERN "*.glb")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
