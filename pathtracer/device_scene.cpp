@@ -150,7 +150,10 @@ void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   triangles_ = store(scene.triangles, "triangles");
   materials_ = store(scene.materials, "materials");
   upload_lights(device, *list, punctual_emitters(scene.lights, name_, radius_));
-  texture_coordinates_ = store(scene.texture_coordinates, "texture coordinates");
+  // Shaders with textures built in read them of every vertex, whatever its material.
+  std::vector<glm::vec2> texture_coordinates = scene.texture_coordinates;
+  texture_coordinates.resize(scene.positions.size(), glm::vec2(0));
+  texture_coordinates_ = store(std::move(texture_coordinates), "texture coordinates");
   TexelStore texels = store_texels(scene);
   textures_ = store(std::move(texels.textures), "textures");
   texels_ = store(std::move(texels.texels), "texels");

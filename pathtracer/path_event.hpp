@@ -66,29 +66,30 @@ static_assert(sizeof(PathEvent) == 128);
 
 /// Where words of events lie that programs other than tables need.
 namespace event_word {
-inline constexpr std::size_t depth = 2;                        ///< segment
-inline constexpr std::size_t segment_origin = 4;               ///< segment
-inline constexpr std::size_t segment_scatterer_density = 7;    ///< segment
-inline constexpr std::size_t segment_direction = 8;            ///< segment
-inline constexpr std::size_t segment_squeezing = 11;           ///< segment
-inline constexpr std::size_t segment_throughput = 12;          ///< segment
-inline constexpr std::size_t segment_radiance = 16;            ///< segment
-inline constexpr std::size_t segment_scatterer_position = 20;  ///< segment
-inline constexpr std::size_t ray_kind = 2;                     ///< ray: RayKind
-inline constexpr std::size_t ray_dimension = 3;                ///< ray
-inline constexpr std::size_t ray_origin = 4;                   ///< ray
-inline constexpr std::size_t ray_t_max = 7;                    ///< ray
-inline constexpr std::size_t ray_direction = 8;                ///< ray
-inline constexpr std::size_t ray_answer = 11;                  ///< ray: TracedRay::answer
-inline constexpr std::size_t hit_kind = 12;                    ///< ray: HitKind
-inline constexpr std::size_t hit_t = 28;                       ///< ray; not in the digest
-inline constexpr std::size_t hit_barycentrics = 29;            ///< ray; two words, not in the digest
-inline constexpr std::size_t end_reason = 2;                   ///< end: EndReason
-inline constexpr std::size_t end_ray_count = 3;                ///< end
-inline constexpr std::size_t end_radiance = 4;                 ///< end
-inline constexpr std::size_t roulette_survives = 2;            ///< roulette
-inline constexpr std::size_t roulette_bits = 3;                ///< roulette
-inline constexpr std::size_t roulette_survival = 4;            ///< roulette
+inline constexpr std::size_t depth = 2;                         ///< segment
+inline constexpr std::size_t segment_origin = 4;                ///< segment
+inline constexpr std::size_t segment_scatterer_density = 7;     ///< segment
+inline constexpr std::size_t segment_direction = 8;             ///< segment
+inline constexpr std::size_t segment_squeezing = 11;            ///< segment
+inline constexpr std::size_t segment_throughput = 12;           ///< segment
+inline constexpr std::size_t segment_radiance = 16;             ///< segment
+inline constexpr std::size_t segment_scatterer_position = 20;   ///< segment
+inline constexpr std::size_t ray_kind = 2;                      ///< ray: RayKind
+inline constexpr std::size_t ray_dimension = 3;                 ///< ray
+inline constexpr std::size_t ray_origin = 4;                    ///< ray
+inline constexpr std::size_t ray_t_max = 7;                     ///< ray
+inline constexpr std::size_t ray_direction = 8;                 ///< ray
+inline constexpr std::size_t ray_answer = 11;                   ///< ray: TracedRay::answer
+inline constexpr std::size_t hit_kind = 12;                     ///< ray: HitKind
+inline constexpr std::size_t hit_t = 28;                        ///< ray; not in the digest
+inline constexpr std::size_t hit_barycentrics = 29;             ///< ray; two words, not in the digest
+inline constexpr std::size_t surface_texture_coordinates = 16;  ///< surface; two words
+inline constexpr std::size_t end_reason = 2;                    ///< end: EndReason
+inline constexpr std::size_t end_ray_count = 3;                 ///< end
+inline constexpr std::size_t end_radiance = 4;                  ///< end
+inline constexpr std::size_t roulette_survives = 2;             ///< roulette
+inline constexpr std::size_t roulette_bits = 3;                 ///< roulette
+inline constexpr std::size_t roulette_survival = 4;             ///< roulette
 }  // namespace event_word
 
 /// Which path: one sample of one pixel.

@@ -66,6 +66,7 @@ void print_header() {
   for (std::size_t i = 0; i < compare::difference_class_count; ++i)
     fmt::print("  {}", compare::name(static_cast<compare::DifferenceClass>(i)));
   fmt::print("  false alarms\n");
+  std::fflush(stdout);
 }
 
 void print(const std::string& name, const Tally& tally) {
@@ -76,6 +77,19 @@ void print(const std::string& name, const Tally& tally) {
   }
   fmt::print("  {:>12}\n", tally.alarms);
   std::fflush(stdout);
+}
+
+/// The first few.
+void print_mismatches(const std::filesystem::path& path, std::uint32_t seed, const compare::Classification& found) {
+  std::size_t left = 3;
+  for (const compare::ClassifiedPath& classified : found.paths) {
+    for (const compare::Parting& parting : classified.partings) {
+      if (parting.difference_class != compare::DifferenceClass::mismatch || left == 0) continue;
+      --left;
+      fmt::print("  {} seed {} pixel {},{} sample {}: {}\n", path.filename().string(), seed, classified.path.pixel.x,
+                 classified.path.pixel.y, classified.path.sample, parting.sentence);
+    }
+  }
 }
 
 /// All seeds of one scene. Alarms are printed as they come.
@@ -106,11 +120,7 @@ Tally examine(const std::filesystem::path& path, const Options& options, const r
     if (verdict.agree) continue;
     for (const std::string& reason : verdict.reasons)
       fmt::print("  {} seed {}: {}\n", path.filename().string(), settings.seed, reason);
-    for (const compare::ClassifiedPath& classified : found.paths)
-      for (const compare::Parting& parting : classified.partings)
-        if (parting.difference_class == compare::DifferenceClass::mismatch)
-          fmt::print("  {} seed {} pixel {},{} sample {}: {}\n", path.filename().string(), settings.seed,
-                     classified.path.pixel.x, classified.path.pixel.y, classified.path.sample, parting.sentence);
+    print_mismatches(path, settings.seed, found);
   }
   return tally;
 }

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "devices/devices.hpp"
 #include "pathtracer/device_scene.hpp"
 #include "pathtracer/obj_loader.hpp"
 #include "pathtracer/renderer.hpp"
@@ -217,4 +218,26 @@ TANDEM_DEVICE_TEST("What a device reports of a hit belongs to the primitive that
     }
   }
   CHECK(hits > 100);
+}
+
+TEST_CASE("Where no vertex has texture coordinates, shaders that read them find zero") {
+  // One device is enough, and this one does not take minutes to compile all features.
+  const rhi::DeviceHandle device = create_device({.name = "cpu"});
+  const Scene scene = load_obj(source_directory / "scenes" / "cornell_box.obj");
+  REQUIRE(scene.texture_coordinates.empty());
+  RenderSettings settings = small;
+  settings.further_features = feature::all;
+  Renderer renderer(device, scene, settings);
+  std::size_t surfaces = 0;
+  bool zero = true;
+  for (const PathEvents& events : renderer.record_paths(all_starts())) {
+    for (const PathEvent& event : events) {
+      if (event.kind() != EventKind::surface) continue;
+      ++surfaces;
+      zero = zero && event.words[event_word::surface_texture_coordinates] == 0 &&
+             event.words[event_word::surface_texture_coordinates + 1] == 0;
+    }
+  }
+  CHECK(surfaces > 100);
+  CHECK(zero);
 }
