@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "compare/event_fields.hpp"
+#include "compare/explanation.hpp"
 #include "compare/probe/probing.hpp"
 #include "pathtracer/renderer.hpp"
 #include "pathtracer/scene_loader.hpp"
@@ -26,13 +27,24 @@ constexpr std::uint32_t samples = 2;
 constexpr std::uint32_t tile_side = 16;  // so that a picture takes several dispatches
 constexpr std::size_t classed_pixels = 16;
 constexpr std::size_t surveyed_pixels = 16;
-constexpr std::uint32_t probed_paths = 40;
+constexpr std::uint32_t spread_path_count = 40;
 
 pathtracer::RenderSettings settings() {
   pathtracer::RenderSettings settings;
   settings.width = settings.height = image_side;
   settings.maximum_tile = tile_side;
   return settings;
+}
+
+/// Some paths, one pixel each, all over the picture.
+std::vector<pathtracer::PathStart> spread_paths() {
+  constexpr std::uint32_t pixels = image_side * image_side;
+  std::vector<pathtracer::PathStart> starts;
+  for (std::uint32_t i = 0; i < spread_path_count; ++i) {
+    const std::uint32_t pixel = i * pixels / spread_path_count;
+    starts.push_back({.path = {{pixel % image_side, pixel / image_side}, 0}});
+  }
+  return starts;
 }
 
 /// What parts most often, and where first.
@@ -89,6 +101,24 @@ std::uint32_t segment_of(const pathtracer::PathEvent& event) {
   return is_left ? event.segment() - 1 : event.segment();
 }
 
+/// The name of the first field, observations aside, in which two events of a kind differ; "" where the kinds do.
+std::string first_field(const pathtracer::PathEvent& a, const pathtracer::PathEvent& b) {
+  if (a.kind() != b.kind()) return "";
+  for (const compare::EventField& field : compare::fields_of(a.kind()))
+    if (field.tier != compare::FieldTier::observed && !compare::is_equal(field, a, b)) return field.name;
+  return "";
+}
+
+/// Whether `tandem explain` would show the path to part at event `first` of both recordings.
+bool is_explained(const pathtracer::PathEvents& a, const pathtracer::PathEvents& b, std::size_t first) {
+  const std::vector<compare::EventPair> pairs = compare::pair_events(a, b);
+  const std::optional<compare::FirstDifference> named = compare::first_difference(pairs);
+  if (!named) return false;
+  const compare::EventPair& pair = pairs[named->pair];
+  const bool is_first = pair.a == a[first] || (first < b.size() && pair.b == b[first]);
+  return is_first && (named->field == nullptr || first_field(a[first], b[first]) == named->field->name);
+}
+
 /// Whether what is said of where a path first parts agrees with the bare recordings; "" or what does not.
 std::string check_against_recordings(const compare::ClassifiedPath& path, pathtracer::Renderer& a,
                                      pathtracer::Renderer& b) {
@@ -96,14 +126,23 @@ std::string check_against_recordings(const compare::ClassifiedPath& path, pathtr
   const pathtracer::PathEvents events_a = a.record_paths(start).front();
   const pathtracer::PathEvents events_b = b.record_paths(start).front();
   const compare::Parting& parting = path.partings.front();
-  const bool is_observation = parting.field != nullptr && parting.field->tier == compare::FieldTier::observed;
-  const std::size_t first = is_observation ? parting.event_index : first_difference(events_a, events_b);
-  const bool is_right = parting.event_index == first && first < events_a.size() &&
-                        parting.segment == segment_of(events_a[first]) &&
-                        (first >= events_b.size() || events_a[first] != events_b[first]);
-  if (is_right) return "";
-  return fmt::format("pixel {},{} sample {} parts at event {}, not at event {} of segment {}", path.path.pixel.x,
-                     path.path.pixel.y, path.path.sample, first, parting.event_index, parting.segment);
+  const std::string place =
+      fmt::format("pixel {},{} sample {}", path.path.pixel.x, path.path.pixel.y, path.path.sample);
+  if (parting.field != nullptr && parting.field->tier == compare::FieldTier::observed) {
+    const auto observed = compare::observed_differences(compare::pair_events(events_a, events_b));
+    return observed.differing > 0 ? "" : place + " shows the same hits in both recordings";
+  }
+  const std::size_t first = first_difference(events_a, events_b);
+  if (first >= events_a.size()) return place + " does not part in a's recording";
+  if (parting.event_index != first || parting.segment != segment_of(events_a[first]))
+    return fmt::format("{} parts at event {}, not at event {} of segment {}", place, first, parting.event_index,
+                       parting.segment);
+  return is_explained(events_a, events_b, first) ? "" : place + " is explained by another event or field";
+}
+
+/// Whether the recordings of paths all over the picture have the same bits, observations included.
+bool same_recordings(pathtracer::Renderer& a, pathtracer::Renderer& b) {
+  return a.record_paths(spread_paths()) == b.record_paths(spread_paths());
 }
 
 /// Takes what a classification says into the finding. Of a fault that does harm only mismatches are of interest, of
@@ -149,7 +188,7 @@ std::string problem_of(const Fault& fault, const Finding& finding) {
   if (mismatch && !fault.harmful)
     return fmt::format("a mismatch, by {}: {} {}", name(finding.found_by), finding.event, finding.field);
   if (!mismatch && fault.harmful) return "no mismatch";
-  if (finding.found_by != fault.finder && (fault.harmful || fault.finder == Finder::picture))
+  if (finding.found_by != fault.finder)
     return fmt::format("found by {} and not by {}", name(finding.found_by), name(fault.finder));
   if (!fault.harmful) return "";
   if (finding.event != fault.event) return fmt::format("the event is '{}' and not '{}'", finding.event, fault.event);
@@ -182,12 +221,7 @@ FaultRunner::Reference& FaultRunner::reference(const std::string& scene, pathtra
   a.render(samples);
   pathtracer::Image image = a.image();
 
-  constexpr std::uint32_t pixels = image_side * image_side;
-  std::vector<pathtracer::PathStart> starts;
-  for (std::uint32_t i = 0; i < probed_paths; ++i) {
-    const std::uint32_t pixel = i * pixels / probed_paths;
-    starts.push_back({.path = {{pixel % image_side, pixel / image_side}, 0}});
-  }
+  const std::vector<pathtracer::PathStart> starts = spread_paths();
   std::vector<compare::PathRay> rays;
   const std::vector<pathtracer::PathEvents> recorded = a.record_paths(starts);
   for (std::size_t i = 0; i < starts.size(); ++i) {
@@ -214,6 +248,11 @@ Finding FaultRunner::run(const Fault& fault) {
   for (const compare::ClassifiedPath& path : found.paths) {
     if (!finding.problem.empty()) break;
     if (!path.partings.empty()) finding.problem = check_against_recordings(path, truth.a, b);
+  }
+  if (finding.found_by == Finder::nobody && !fault.harmful && !same_recordings(truth.a, b)) {
+    // What devices may report otherwise is no parting.
+    finding.found_by = Finder::survey;
+    finding.worst = DifferenceClass::rounding;
   }
   if (finding.found_by == Finder::nobody || !fault.harmful)
     take(compare::probe(*device_, *faulty, truth.scene, truth.rays, fault.form, fault.form), finding);
