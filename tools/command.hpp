@@ -12,7 +12,7 @@ using Action = std::function<int()>;
 
 namespace exit_code {
 inline constexpr int success = 0;
-inline constexpr int differ = 1;  ///< `tandem diff`, `matrix`, `gallery`, `suite`: the images do not agree
+inline constexpr int differ = 1;  ///< the images do not agree (diff, matrix, gallery, suite); a mismatch (explain)
 inline constexpr int failed = 1;  ///< `tandem conformance`: a device does not do what it must
 inline constexpr int error = 2;
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
@@ -21,6 +21,7 @@ inline constexpr int interrupted = 130;  ///< as shells report a program ended b
 void add_devices_command(CLI::App& app, Action& action);
 void add_render_command(CLI::App& app, Action& action);
 void add_diff_command(CLI::App& app, Action& action);
+void add_explain_command(CLI::App& app, Action& action);
 void add_generate_command(CLI::App& app, Action& action);
 void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
+
+#include "tools/device_json.hpp"
+#include "tools/probe_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -41,6 +45,52 @@ nlohmann::ordered_json field_json(const EventField& field, const EventPair& pair
   if (pair.b && !equal) add(*pair.b, "b", "name_b");
   if (pair.a && pair.b && !equal) {
     if (const std::uint32_t ulp = compare::ulp_distance(field, *pair.a, *pair.b); ulp != none) json["ulp"] = ulp;
+  }
+  return json;
+}
+
+nlohmann::ordered_json parting_json(const compare::Parting& parting) {
+  nlohmann::ordered_json json = {{"segment", parting.segment}, {"event", compare::name(parting.a.kind())}};
+  if (parting.field != nullptr) {
+    json["field"] = parting.field->name;
+    json["a"] = value_json(*parting.field, parting.a);
+    json["b"] = value_json(*parting.field, parting.b);
+    if (parting.ulp_distance != none) json["ulp"] = parting.ulp_distance;
+    if (std::isfinite(parting.relative_difference)) json["relative"] = parting.relative_difference;
+  } else {
+    json["event_b"] = compare::name(parting.b.kind());
+  }
+  json["class"] = compare::name(parting.difference_class);
+  json["sentence"] = parting.sentence;
+  if (parting.exact_answer) {
+    const std::uint32_t answer = *parting.exact_answer;
+    json["exact_answer"] = answer == none ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(answer);
+  }
+  return json;
+}
+
+nlohmann::ordered_json sample_json(const ExplainedSample& sample) {
+  nlohmann::ordered_json json = {{"sample", sample.sample}, {"differs", sample.differs}};
+  if (!sample.judgement) return json;
+  const std::optional<compare::DifferenceClass> worst = sample.judgement->worst();
+  json["class"] = worst ? nlohmann::ordered_json(compare::name(*worst)) : nlohmann::ordered_json(nullptr);
+  json["partings"] = nlohmann::ordered_json::array();
+  for (const compare::Parting& parting : sample.judgement->partings) json["partings"].push_back(parting_json(parting));
+  return json;
+}
+
+nlohmann::ordered_json first_json(const Explanation& explanation) {
+  if (!explanation.first) return nullptr;
+  const compare::FirstDifference& first = *explanation.first;
+  const EventPair& pair = explanation.events[first.pair];
+  nlohmann::ordered_json json = {
+      {"index", first.pair}, {"segment", pair.segment()}, {"event", compare::name(pair.kind())}};
+  if (first.field == nullptr) {
+    json["only"] = pair.a ? "a" : "b";
+  } else {
+    json["field"] = first.field->name;
+    json.update(field_json(*first.field, pair, explanation.names));
+    if (std::isfinite(first.relative_difference)) json["relative"] = first.relative_difference;
   }
   return json;
 }
@@ -82,6 +132,28 @@ nlohmann::ordered_json events_json(std::span<const EventPair> pairs, const compa
     events.push_back(std::move(event));
   }
   return events;
+}
+
+nlohmann::ordered_json to_json(const Explanation& explanation) {
+  nlohmann::ordered_json json = {{"device_a", to_json(explanation.a)},
+                                 {"device_b", to_json(explanation.b)},
+                                 {"arbiter", to_json(explanation.arbiter)},
+                                 {"trace_a", pathtracer::name(explanation.trace_a)},
+                                 {"trace_b", pathtracer::name(explanation.trace_b)},
+                                 {"settings", to_json(explanation.job)},
+                                 {"pixel", {explanation.pixel.x, explanation.pixel.y}},
+                                 {"mismatches", explanation.mismatches()},
+                                 {"samples", nlohmann::ordered_json::array()},
+                                 {"sample", explanation.shown_sample().sample},
+                                 {"first_difference", first_json(explanation)}};
+  for (const ExplainedSample& sample : explanation.samples) json["samples"].push_back(sample_json(sample));
+  json["observed"] = {{"fields", explanation.observed.fields},
+                      {"differing", explanation.observed.differing},
+                      {"ulp", explanation.observed.ulp_distance}};
+  json["events"] = events_json(explanation.events, explanation.names);
+  if (explanation.probing) json["probes"] = to_json(*explanation.probing);
+  json["version"] = TANDEM_VERSION;
+  return json;
 }
 
 }  // namespace tandem::tools

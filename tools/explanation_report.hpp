@@ -7,8 +7,9 @@
 
 #include "compare/explanation.hpp"
 #include "compare/scene_names.hpp"
+#include "tools/explanation.hpp"
 
-/// The events of a path on two devices, for programs.
+/// Paths on two devices, for people and for programs.
 namespace tandem::tools {
 
 /// One object for each pair: {"segment": 2, "event": "ray", "fields": {NAME: {"a": VALUE, "b": VALUE, "ulp": N}}}.
@@ -22,5 +23,16 @@ nlohmann::ordered_json events_json(std::span<const compare::EventPair> pairs, co
 
 /// The value of a field as events_json has it.
 nlohmann::ordered_json value_json(const compare::EventField& field, const pathtracer::PathEvent& event);
+
+struct ExplanationTableOptions {
+  bool all_events = false;  ///< every event with every field; else those where the paths part, and of later ones a line
+  bool colors = false;      ///< for terminals
+};
+
+/// What differs first and why, then the events side by side.
+std::string table(const Explanation& explanation, const ExplanationTableOptions& options = {});
+
+/// The same for programs, with all events; docs/explain.md lists the keys.
+nlohmann::ordered_json to_json(const Explanation& explanation);
 
 }  // namespace tandem::tools

@@ -26,14 +26,14 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "tandem " TANDEM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device "
-      "fails\n"
-      "(conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
+      "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device is\n"
+      "wrong (explain, conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
       "'tandem COMMAND --help' explains a command.");
   Action action;
   add_devices_command(app, action);
   add_render_command(app, action);
   add_diff_command(app, action);
+  add_explain_command(app, action);
   add_generate_command(app, action);
   add_gallery_command(app, action);
   add_bench_command(app, action);

@@ -121,6 +121,17 @@ CLI::Option* add_size(CLI::App& command, const std::string& name, std::optional<
   return command.add_option_function<std::string>(name, read, description)->type_name("WxH");
 }
 
+CLI::Option* add_pixel(CLI::App& command, const std::string& name, glm::uvec2& value, const std::string& description) {
+  const auto read = [&value, name](const std::string& text) {
+    const auto parts = split<2>(text, ',');
+    const std::optional<std::uint32_t> x = parts ? number<std::uint32_t>((*parts)[0]) : std::nullopt;
+    const std::optional<std::uint32_t> y = parts ? number<std::uint32_t>((*parts)[1]) : std::nullopt;
+    if (!x || !y) refuse(name, text, "a pixel such as 200,310");
+    value = glm::uvec2(*x, *y);
+  };
+  return command.add_option_function<std::string>(name, read, description)->type_name("X,Y");
+}
+
 CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<glm::vec3>& value, float least,
                         const std::string& type, const std::string& description) {
   const auto read = [&value, name, least](const std::string& text) {

@@ -36,6 +36,9 @@ CLI::Option* add_number(CLI::App& command, const std::string& name, std::optiona
 CLI::Option* add_size(CLI::App& command, const std::string& name, std::optional<glm::uvec2>& value,
                       const std::string& description);
 
+/// A pixel as X,Y.
+CLI::Option* add_pixel(CLI::App& command, const std::string& name, glm::uvec2& value, const std::string& description);
+
 /// One of `names`.
 CLI::Option* add_choice(CLI::App& command, const std::string& name, std::span<const char* const> names,
                         const std::function<void(std::size_t)>& choose, const std::string& description);
