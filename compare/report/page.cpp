@@ -112,6 +112,17 @@ ordered_json classification_json(const Classification& classification, const Ran
   return json;
 }
 
+/// "event/field" of all fields that devices only report and no result depends on.
+ordered_json observed_fields() {
+  ordered_json json = ordered_json::array();
+  for (std::uint32_t i = 1; i <= pathtracer::event_kind_count; ++i) {
+    const auto kind = static_cast<pathtracer::EventKind>(i);
+    for (const EventField& field : fields_of(kind))
+      if (field.tier == FieldTier::observed) json.push_back(std::string(name(kind)) + "/" + field.name);
+  }
+  return json;
+}
+
 /// One byte a pixel: 255 times the error.
 std::string packed_errors(const FlipErrors& flip) {
   std::vector<std::uint8_t> bytes;
@@ -155,7 +166,8 @@ ordered_json data_json(const ReportPage& contents) {
       {"flip", contents.flip != nullptr ? ordered_json(packed_errors(*contents.flip)) : ordered_json()},
       {"classes", ordered_json::array()},
       {"paths", packed_paths(contents.paths)},
-      {"path_count", contents.paths.size()}};
+      {"path_count", contents.paths.size()},
+      {"observed", observed_fields()}};
   for (std::size_t i = 0; i < difference_class_count; ++i)
     json["classes"].push_back(name(static_cast<DifferenceClass>(i)));
   json["classification"] = contents.classification != nullptr

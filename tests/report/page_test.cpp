@@ -292,28 +292,29 @@ TEST_CASE("classes can be filtered, and a click shows the events of the path") {
                                          .b = event,
                                          .sentence = "The ray met <i>another</i> triangle."}}}};
   const std::string events = R"json([
+    {"segment": 0, "event": "ray", "fields": {"barycentrics": {"a": [0, 1], "b": [0, 0.5], "ulp": 8388608}}},
     {"segment": 0, "event": "camera", "fields": {"sample": {"a": 2}, "origin": {"a": [0, 1, 2.5]}}},
-    {"segment": 3, "event": "ray", "fields": {"primitive": {"a": 17, "name_a": "triangle 17 (leaf)",
-                    "b" : 18, "name_b" : "triangle 18 (sky)"
-}
-, "t" : { "a" : 1.5, "b" : 1.25, "ulp" : 2097152 }
-}
-},
+    {"segment": 3, "event": "ray", "fields": {
+      "primitive": {"a": 17, "name_a": "triangle 17 (leaf)", "b": 18, "name_b": "triangle 18 (sky)"},
+      "t max": {"a": 1.5, "b": 1.25, "ulp": 2097152},
+      "t": {"a": 3, "b": 4, "ulp": 2097152}}},
     {"segment": 4, "event": "roulette", "only": "b", "fields": {"survives": {"b": true}}}])json";
-  const std::string page = fixture.page("box.obj", &classification, {{.path = {.pixel = {40, 5}, .sample = 2}, .events = events}});
-check_in_browser(page, R"js(
+  const std::string page =
+      fixture.page("box.obj", &classification, {{.path = {.pixel = {40, 5}, .sample = 2}, .events = events}});
+  check_in_browser(page, R"js(
     check(text("look-sentence").startsWith("At pixel 40, 5. Its green is 0.25 on cpu and 0.75 on vulkan:0, 66.7 % apart"), text("look-sentence"));
     check(text("look-sentence").endsWith("one of the devices is wrong."), "a mismatch is told");
     const {view} = page.viewer;
     byId("look-button").click();
     check(text("path").includes("sample 2, segment 3: The ray met <i>another</i> triangle."), text("path"));
     const rows = () => [...document.querySelectorAll("table.events tbody tr")].map((row) => [...row.cells].map((cell) => cell.textContent).join("|"));
-    check(rows()[0] === "segment 0: camera|the same", rows()[0]);
-    check(rows()[1] === "segment 3: ray|2 of 2 fields differ", rows()[1]);
-    check(rows()[2] === "primitive|17: triangle 17 (leaf)|18: triangle 18 (sky)|", rows()[2]);
-    check(rows()[3] === "t|1.5|1.25|2,097,152", rows()[3]);
-    check(rows()[4] === "segment 4: roulette|only on b", rows()[4]);
-    check(rows()[5] === "survives||true|", rows()[5]);
+    check(rows()[0] === "segment 0: ray|the same, but for the digits of barycentrics, on which no result depends", rows()[0]);
+    check(rows()[1] === "segment 0: camera|the same", rows()[1]);
+    check(rows()[2] === "segment 3: ray|2 of 3 fields differ", rows()[2]);
+    check(rows()[3] === "primitive|17: triangle 17 (leaf)|18: triangle 18 (sky)|", rows()[3]);
+    check(rows()[4] === "t max|1.5|1.25|2,097,152", rows()[4]);
+    check(rows()[5] === "segment 4: roulette|only on b", rows()[5]);
+    check(rows()[6] === "survives||true|", rows()[6]);
     check(document.querySelector("tr.first").textContent.startsWith("segment 3"), "first difference");
     document.querySelector("#path .check input").click();
     check(rows().includes("origin|0, 1, 2.5|0, 1, 2.5|"), "equal fields");
@@ -340,7 +341,7 @@ check_in_browser(page, R"js(
     byId("class-not-classed").click();
     check(text("position") === "none" && byId("next").disabled, "nothing left");
   )js",
-                 18);
+                   19);
 }
 
 TEST_CASE("names are text, whatever they hold") {

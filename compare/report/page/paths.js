@@ -9,8 +9,15 @@ function isDifferent(event, field) {
   return "only" in event || "b" in field;
 }
 
-function isEqualEvent(event) {
-  return !Object.values(event.fields).some((field) => isDifferent(event, field));
+/**
+ * Names of the fields of an event: all; those that differ and that the path goes on with; those that differ in what
+ * devices report of a hit, on which no result depends. @param observed "event/field" of the latter
+ */
+function sortFields(event, observed) {
+  const all = Object.keys(event.fields);
+  const differing = all.filter((name) => isDifferent(event, event.fields[name]));
+  const isObserved = (name) => !("only" in event) && observed.includes(`${event.event}/${name}`);
+  return {all, carried: differing.filter((name) => !isObserved(name)), reported: differing.filter(isObserved)};
 }
 
 /** The value on a device; where b's is left out it is that of a. With what it names in the scene. */
@@ -21,30 +28,30 @@ function fieldCell(event, field, side) {
   return element("td", {className: "value"}, !isThere ? "" : name ? `${valueText(field[shown])}: ${name}` : valueText(field[shown]));
 }
 
-function eventNote(event, count, differing) {
+function eventNote(event, {all, carried, reported}) {
   if ("only" in event) return `only on ${event.only}`;
-  if (differing === 0) return "the same";
-  return `${differing} of ${countText(count, "field")} ${differing === 1 ? "differs" : "differ"}`;
+  if (carried.length > 0) return `${carried.length} of ${countText(all.length, "field")} ${carried.length === 1 ? "differs" : "differ"}`;
+  return reported.length > 0 ? `the same, but for the digits of ${reported.join(" and ")}, on which no result depends` : "the same";
 }
 
-function eventRows(event, isFirst, showsAll) {
-  const fields = Object.entries(event.fields);
-  const differing = fields.filter(([, field]) => isDifferent(event, field));
-  const className = `event${isFirst ? " first" : ""}${differing.length > 0 ? " changed" : ""}`;
+function eventRows(event, fields, isFirst, showsAll) {
+  const className = `event${isFirst ? " first" : ""}${fields.carried.length > 0 ? " changed" : ""}`;
   const rows = [element("tr", {className}, element("th", {scope: "row"}, `segment ${event.segment}: ${event.event}`),
-    element("td", {colSpan: 3}, eventNote(event, fields.length, differing.length)))];
-  for (const [name, field] of showsAll ? fields : differing) {
-    rows.push(element("tr", {className: `field${isDifferent(event, field) ? " changed" : ""}`}, element("th", {scope: "row"}, name),
+    element("td", {colSpan: 3}, eventNote(event, fields)))];
+  for (const name of showsAll ? fields.all : fields.carried) {
+    const field = event.fields[name];
+    rows.push(element("tr", {className: `field${fields.carried.includes(name) ? " changed" : ""}`}, element("th", {scope: "row"}, name),
       fieldCell(event, field, "a"), fieldCell(event, field, "b"),
       element("td", {className: "value"}, "ulp" in field ? field.ulp.toLocaleString("en") : "")));
   }
   return rows;
 }
 
-function eventTable(path, names, showsAll) {
-  const first = path.events.findIndex((event) => !isEqualEvent(event));
+function eventTable(path, names, observed, showsAll) {
+  const sorted = path.events.map((event) => sortFields(event, observed));
+  const first = sorted.findIndex(({carried}) => carried.length > 0);
   const head = ["Event and field", `a: ${names.a}`, `b: ${names.b}`, "ULP"].map((text) => element("th", {scope: "col"}, text));
-  const rows = path.events.flatMap((event, i) => eventRows(event, i === first, showsAll));
+  const rows = path.events.flatMap((event, i) => eventRows(event, sorted[i], i === first, showsAll));
   return element("div", {className: "scroll"}, element("table", {className: "events"},
     element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows)));
 }
@@ -75,16 +82,16 @@ function showPaths({scene, data, pixels, names, recorded, found}, pixel) {
   }
   const paths = recorded.filter(isHere);
   if (paths.length === 0) children.push(element("p", {}, unrecordedSentence(data, pixels, pixel), ...commandHint(scene, pixel)));
-  for (const path of paths) children.push(...pathBlock(path, names));
+  for (const path of paths) children.push(...pathBlock(path, names, data.observed));
   content.replaceChildren(...children);
 }
 
-function pathBlock(path, names) {
+function pathBlock(path, names, observed) {
   const box = element("input", {type: "checkbox"});
-  const table = element("div", {}, eventTable(path, names, false));
-  box.addEventListener("change", () => table.replaceChildren(eventTable(path, names, box.checked)));
+  const table = element("div", {}, eventTable(path, names, observed, false));
+  box.addEventListener("change", () => table.replaceChildren(eventTable(path, names, observed, box.checked)));
   return [element("h3", {}, `Sample ${path.sample}, event by event`),
-    element("label", {className: "check"}, box, " Show fields that are equal too"), table];
+    element("label", {className: "check"}, box, " Show all fields"), table];
 }
 
 function recordedSentence(data) {

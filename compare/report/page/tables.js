@@ -2,7 +2,7 @@
 
 function cell(key, value) {
   const text = value === null ? "none" : typeof value === "object" ? JSON.stringify(value) : String(value);
-  const result = element("td", {className: "value"}, text);
+  const result = element("td", {className: text.length > 24 ? "value long" : "value"}, text);
   result.dataset.key = key;
   return result;
 }
@@ -21,7 +21,7 @@ function row(name, ...cells) {
 
 const isScalar = (value) => value === null || typeof value !== "object";
 const isSimple = (value) => isScalar(value) || (Array.isArray(value) && value.every(isScalar));
-const mostRows = 100;
+const mostRows = 20;
 
 /** Tables of whatever there is under a key: scalars, then what is nested. */
 function anything(key, value) {
@@ -56,8 +56,7 @@ function arrayTables(key, items) {
 }
 
 function addSection(title, children, className = "") {
-  const heading = element("h2", {}, title);
-  byId("report").append(element("section", {className, ariaLabel: title}, heading, ...children));
+  byId("report").append(element("section", {className, ariaLabel: title}, element("h2", {}, title), ...children));
 }
 
 /** What is said of each number; of a fraction also how many pixels it is. */
@@ -146,7 +145,7 @@ function histogram(bins) {
       svg("title", {}, `${countText(bin.values, "value")} ${range} ULP apart`)));
     const middle = {x: x + step / 2, "text-anchor": "middle"};
     if (i % every === 0) children.push(svg("text", {...middle, y: height - bottom + 15}, compactText(bin.least)));
-    if (bin.values > 0 && bins.length <= 16) children.push(svg("text", {...middle, y: height - bottom - size - 5}, compactText(bin.values)));
+    if (bin.values > 0 && bins.length <= 28) children.push(svg("text", {...middle, y: height - bottom - size - 5}, compactText(bin.values)));
   });
   children.push(svg("text", {x: width / 2, y: height - 3, "text-anchor": "middle"}, "units in the last place between a and b (the least of each column)"));
   return svg("svg", {class: "histogram", viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "Histogram of distances in units in the last place; the table below has its numbers"}, ...children);
@@ -180,7 +179,7 @@ function addRegions(numbers, goToRegion) {
     return result;
   });
   const caption = numbers.metrics.worst_region === null ? "All regions are bit-equal." : "The worst region is marked.";
-  addSection("Regions", [table(["", "pixels", ...names.map(label), ""], rows, caption)]);
+  addSection("Regions", [table(["", "pixels", ...names.map(label), ""], rows, caption)], "wide");
 }
 
 /** What has its own table above, or stands at the top of the page. */

@@ -156,15 +156,17 @@ function createViewer(pixels, names, {isShown, onPoint, onSelect, onChange}) {
     context.fillRect(x - 2, 0, 4, height);
     context.fillStyle = "#ffffff";
     context.fillRect(x - 1, 0, 2, height);
+    // Below the middle, which is where a pixel that was gone to is.
+    const y = 0.8 * height;
     context.beginPath();
-    context.arc(x, height / 2, 13, 0, 2 * Math.PI);
+    context.arc(x, y, 13, 0, 2 * Math.PI);
     context.fill();
     context.fillStyle = "#222222";
     for (const side of [-1, 1]) {
       context.beginPath();
-      context.moveTo(x + 9 * side, height / 2);
-      context.lineTo(x + 3 * side, height / 2 - 5);
-      context.lineTo(x + 3 * side, height / 2 + 5);
+      context.moveTo(x + 9 * side, y);
+      context.lineTo(x + 3 * side, y - 5);
+      context.lineTo(x + 3 * side, y + 5);
       context.fill();
     }
   }
