@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compare/explanation.hpp"
+#include "compare/path_judge.hpp"
 #include "compare/report/page.hpp"
 #include "compare/report/ranking.hpp"
 #include "compare/scene_names.hpp"
@@ -46,7 +47,7 @@ std::vector<PathStart> starts_of(Comparison& comparison, const compare::Classifi
         samples.push_back({.path = {.pixel = ranked.pixel, .sample = sample}});
       const auto of_a = comparison.a.summarize_paths(samples), of_b = comparison.b.summarize_paths(samples);
       for (std::size_t i = samples.size(); i-- > 0;)
-        if (of_a[i] != of_b[i]) path = samples[i].path;
+        if (!compare::is_same(of_a[i], of_b[i])) path = samples[i].path;
     }
     result.push_back({.path = path});
   }
