@@ -308,16 +308,16 @@ TEST_CASE("classes can be filtered, and a click shows the events of the path") {
     byId("look-button").click();
     check(text("path").includes("sample 2, segment 3: The ray met <i>another</i> triangle."), text("path"));
     const rows = () => [...document.querySelectorAll("table.events tbody tr")].map((row) => [...row.cells].map((cell) => cell.textContent).join("|"));
-    check(rows()[0] === "segment 0: ray|the same, but for the digits of barycentrics, on which no result depends", rows()[0]);
-    check(rows()[1] === "segment 0: camera|the same", rows()[1]);
-    check(rows()[2] === "segment 3: ray|2 of 3 fields differ", rows()[2]);
-    check(rows()[3] === "primitive|17: triangle 17 (leaf)|18: triangle 18 (sky)|", rows()[3]);
-    check(rows()[4] === "t max|1.5|1.25|2,097,152", rows()[4]);
-    check(rows()[5] === "segment 4: roulette|only on b", rows()[5]);
-    check(rows()[6] === "survives||true|", rows()[6]);
+    check(rows()[0] === "segment 0: ray to camera|2 events, the same", rows()[0]);
+    check(rows()[1] === "segment 3: ray|2 of 3 fields differ", rows()[1]);
+    check(rows()[2] === "primitive|triangle 17 (leaf)|triangle 18 (sky)|", rows()[2]);
+    check(rows()[3] === "t max|1.5|1.25|2,097,152", rows()[3]);
+    check(rows()[4] === "segment 4: roulette|only on b", rows()[4]);
+    check(rows()[5] === "survives||true|", rows()[5]);
     check(document.querySelector("tr.first").textContent.startsWith("segment 3"), "first difference");
     document.querySelector("#path .check input").click();
     check(rows().includes("origin|0, 1, 2.5|0, 1, 2.5|"), "equal fields");
+    check(rows()[0] === "segment 0: ray|the same, but for the digits of barycentrics, on which no result depends", rows()[0]);
 
     // Counts, and the filter.
     const count = (name) => byId(`class-${name}`).closest("li").querySelector(".count").textContent;

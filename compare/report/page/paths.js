@@ -20,12 +20,12 @@ function sortFields(event, observed) {
   return {all, carried: differing.filter((name) => !isObserved(name)), reported: differing.filter(isObserved)};
 }
 
-/** The value on a device; where b's is left out it is that of a. With what it names in the scene. */
+/** The value on a device, or what it names in the scene; where b's is left out it is that of a. */
 function fieldCell(event, field, side) {
   const isThere = !("only" in event) || event.only === side;
   const shown = side in field ? side : "a";
   const name = field[`name_${shown}`];
-  return element("td", {className: "value"}, !isThere ? "" : name ? `${valueText(field[shown])}: ${name}` : valueText(field[shown]));
+  return element("td", {className: "value"}, isThere ? (name ?? valueText(field[shown])) : "");
 }
 
 function eventNote(event, {all, carried, reported}) {
@@ -47,11 +47,30 @@ function eventRows(event, fields, isFirst, showsAll) {
   return rows;
 }
 
+/** One row for events that are the same, one after the other. */
+function equalRow(events) {
+  const first = events[0];
+  const last = events[events.length - 1];
+  const text = `segment ${first.segment}: ${first.event} to ${first.segment === last.segment ? "" : `segment ${last.segment}: `}${last.event}`;
+  return element("tr", {className: "event"}, element("th", {scope: "row"}, text), element("td", {colSpan: 3}, `${events.length} events, the same`));
+}
+
 function eventTable(path, names, observed, showsAll) {
   const sorted = path.events.map((event) => sortFields(event, observed));
   const first = sorted.findIndex(({carried}) => carried.length > 0);
   const head = ["Event and field", `a: ${names.a}`, `b: ${names.b}`, "ULP"].map((text) => element("th", {scope: "col"}, text));
-  const rows = path.events.flatMap((event, i) => eventRows(event, sorted[i], i === first, showsAll));
+  const rows = [];
+  for (let i = 0; i < path.events.length;) {
+    let end = i;
+    while (!showsAll && end < path.events.length && sorted[end].carried.length === 0) ++end;
+    if (end - i > 1) {
+      rows.push(equalRow(path.events.slice(i, end)));
+      i = end;
+    } else {
+      rows.push(...eventRows(path.events[i], sorted[i], i === first, showsAll));
+      ++i;
+    }
+  }
   return element("div", {className: "scroll"}, element("table", {className: "events"},
     element("thead", {}, element("tr", {}, ...head)), element("tbody", {}, ...rows)));
 }
@@ -91,7 +110,7 @@ function pathBlock(path, names, observed) {
   const table = element("div", {}, eventTable(path, names, observed, false));
   box.addEventListener("change", () => table.replaceChildren(eventTable(path, names, observed, box.checked)));
   return [element("h3", {}, `Sample ${path.sample}, event by event`),
-    element("label", {className: "check"}, box, " Show all fields"), table];
+    element("label", {className: "check"}, box, " Show all events and fields"), table];
 }
 
 function recordedSentence(data) {
