@@ -254,7 +254,8 @@ Finding FaultRunner::run(const Fault& fault) {
     finding.found_by = Finder::survey;
     finding.worst = DifferenceClass::rounding;
   }
-  if (finding.found_by == Finder::nobody || !fault.harmful)
+  // Of one that does no harm, they must not say anything else.
+  if (finding.found_by == Finder::nobody || (!fault.harmful && finding.worst != DifferenceClass::mismatch))
     take(compare::probe(*device_, *faulty, truth.scene, truth.rays, fault.form, fault.form), finding);
   if (finding.problem.empty()) finding.problem = problem_of(fault, finding);
   finding.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
