@@ -60,5 +60,29 @@ TEST_CASE("matrix of pictures that are not finite is exit code 1, and nobody is 
   CHECK(json.at("outvoted").empty());
 }
 
+TEST_CASE("matrix names the device that the others outvote") {
+  const TemporaryFolder folder;
+  // Two quadrilaterals in one tilted plane, cut along different diagonals: which is nearer is decided by rounding
+  // alone, and the exact tracer rounds otherwise.
+  write_text(folder.path() / "pair.mtl", "newmtl red\nKd 0.8 0.1 0.1\nnewmtl green\nKd 0.1 0.8 0.1\n");
+  write_text(folder.path() / "pair.obj",
+             "mtllib pair.mtl\nv -1 -1 0.3\nv 1 -1 -0.4\nv 1 1 -0.1\nv -1 1 0.6\n"
+             "usemtl red\nf 1 2 3\nf 1 3 4\nusemtl green\nf 2 3 4\nf 2 4 1\n");
+  const Outcome outcome =
+      run_tandem({"matrix", "pair.obj", "--size", "32x32", "--spp", "2", "--depth", "2", "--camera-position",
+                  "0.2,0.1,3", "--json", "x.json", "--device", "cpu", "cpu-exact", "cpu"},
+                 {.folder = folder.path()});
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.find("cpu-exact is outvoted: most of the devices agree with each other") != std::string::npos);
+  const nlohmann::json json = nlohmann::json::parse(read_text(folder.path() / "x.json"));
+  CHECK(json.at("outvoted") == std::vector<std::string>{"cpu-exact"});
+  const nlohmann::json& exact = json.at("devices").at(1);
+  CHECK(exact.at("beyond_tolerance").get<int>() > 10);
+  CHECK(exact.at("outvoted") == json.at("vote").at("decided"));
+  CHECK(json.at("vote").at("tied") == 0);
+  CHECK(json.at("devices").at(0).at("outvoted") == 0);
+  CHECK(json.at("devices").at(2).at("outvoted") == 0);
+}
+
 }  // namespace
 }  // namespace tandem::test
