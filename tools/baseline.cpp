@@ -64,6 +64,7 @@ void check_same_job(const StoredRun& run, const JobSummary& job, const pathtrace
   const auto fail = [&](const std::string& reason) {
     throw pathtracer::Error(fmt::format("the run in '{}' cannot be the baseline: {}", run.folder.string(), reason));
   };
+  if (run.report.contains("statistics")) fail("its images are of tier statistical, each of many seeds");
   if (before.value("scene_hash", Json()) != now.at("scene_hash"))
     fail(fmt::format("the content of {} has changed since", job.scene));
   for (const auto& [key, value] : now.items()) {
@@ -76,12 +77,9 @@ void check_same_job(const StoredRun& run, const JobSummary& job, const pathtrace
 }
 
 Baseline compare_with(const StoredRun& run, const DiffReport& report) {
-  // The same samples on the same device: not a matter of statistics.
-  compare::Thresholds thresholds = report.thresholds;
-  if (thresholds.tier == compare::Tier::statistical) thresholds.tier = compare::Tier::tolerance;
   Baseline baseline{.folder = run.folder.string(),
-                    .a = compare_side(run.a, run.report.at("ms_a"), report.a, thresholds),
-                    .b = compare_side(run.b, run.report.at("ms_b"), report.b, thresholds),
+                    .a = compare_side(run.a, run.report.at("ms_a"), report.a, report.thresholds),
+                    .b = compare_side(run.b, run.report.at("ms_b"), report.b, report.thresholds),
                     .changes = {}};
   const Json now = Json::parse(json_text(to_json(report)));
   const auto note = [&](const std::string& what, const Json& before_value, const Json& now_value) {

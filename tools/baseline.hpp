@@ -29,7 +29,8 @@ struct StoredRun {
 /// Throws pathtracer::Error, naming the file, when the folder holds no whole run.
 StoredRun read_stored_run(const std::filesystem::path& folder);
 
-/// Throws pathtracer::Error unless the run shows the same content of a scene under the same settings.
+/// Throws pathtracer::Error unless the run shows the same content of a scene under the same settings, in a tier that
+/// compares the same samples.
 /// @param camera,background those in use
 void check_same_job(const StoredRun& run, const JobSummary& job, const pathtracer::Camera& camera,
                     const glm::vec3& background);

@@ -102,7 +102,11 @@ int diff(const Options& options) {
       options.report.empty() ? options.comparison : with_metrics_for_page(options.comparison);
   Comparison comparison =
       prepare(comparison_options, options.render, std::move(job), open_devices(comparison_options, options.render));
-  if (baseline) check_same_job(*baseline, comparison.summary, comparison.a.camera(), comparison.a.background());
+  if (baseline) {
+    if (comparison.thresholds.tier == compare::Tier::statistical)
+      throw pathtracer::Error("--baseline means nothing in tier statistical, which compares other samples");
+    check_same_job(*baseline, comparison.summary, comparison.a.camera(), comparison.a.background());
+  }
   DiffReport report;
   std::string page;
   const std::vector<OutputFile> files = output_files(options, report, page);

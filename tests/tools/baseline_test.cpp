@@ -91,6 +91,9 @@ TEST_CASE("the stored run of another job is refused before anything is rendered"
   CHECK(refusal("box.obj", {"--sampler", "sobol"}) == start + "its sampler is independent, not sobol\n");
   CHECK(refusal("box.obj", {"--lens-radius", "2"}).find("its lens_radius is 0.0, not 2.0") != std::string::npos);
   CHECK(refusal("box.obj", {"--background", "1,0,0"}).find("its background is") != std::string::npos);
+  const Outcome statistical = diff(folder, "box.obj", {"--baseline", "run", "--tier", "statistical"});
+  CHECK(statistical.exit_code == 2);
+  CHECK(statistical.errors == "tandem: --baseline means nothing in tier statistical, which compares other samples\n");
   // What a file that the scene's file names says, counts too.
   CHECK(diff(folder, "box.obj", {"--baseline", "run"}).exit_code == 0);
   std::string materials = read_text(folder.path() / "cornell_box.mtl");
