@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -15,10 +15,6 @@ using pathtracer::RayKind;
 using pathtracer::TracedRay;
 
 constexpr double tolerated_ulp = 32;
-
-bool is_same_ray(const TracedRay& a, const TracedRay& b) {
-  return std::memcmp(&a, &b, offsetof(TracedRay, answer)) == 0;
-}
 
 double largest_magnitude(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
@@ -194,21 +190,6 @@ bool passes_by(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32
 }
 
 }  // namespace
-
-PathComparison compare_paths(const pathtracer::PathId& path, std::span<const TracedRay> a,
-                             std::span<const TracedRay> b) {
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    if (!is_same_ray(a[i], b[i])) return {.parting = RayParting::rounding, .dispute = std::nullopt};
-    if (a[i].answer == b[i].answer) continue;
-    return {.parting = RayParting::dispute,
-            .dispute = Dispute{.path = path,
-                               .ray_index = static_cast<std::uint32_t>(i),
-                               .ray = a[i],
-                               .answer_a = a[i].answer,
-                               .answer_b = b[i].answer}};
-  }
-  return {.parting = a.size() == b.size() ? RayParting::none : RayParting::length, .dispute = std::nullopt};
-}
 
 const char* name(Ruling ruling) {
   switch (ruling) {

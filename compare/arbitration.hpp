@@ -2,43 +2,21 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
-#include "pathtracer/path_event.hpp"
 #include "pathtracer/scene.hpp"
 #include "pathtracer/traced_ray.hpp"
 
 /// Who is right when two devices give the same ray different answers: a third, exact one decides.
 namespace tandem::compare {
 
-/// The first ray of a path to which two devices gave different answers.
+/// A ray to which two devices gave different answers.
 struct Dispute {
-  pathtracer::PathId path;
-  std::uint32_t ray_index = 0;  ///< of all rays of the path, shadow rays among them
-  pathtracer::TracedRay ray;    ///< its answer is that of a
+  pathtracer::TracedRay ray;
   std::uint32_t answer_a = 0;
   std::uint32_t answer_b = 0;
 };
-
-/// How the same path went on two devices.
-enum class RayParting {
-  none,      ///< the same rays and the same answers
-  dispute,   ///< the same ray had two answers
-  rounding,  ///< the rays themselves differ in some bit, though all answers before were the same
-  length     ///< one path ended where the other went on, with the same rays before
-};
-
-struct PathComparison {
-  RayParting parting = RayParting::none;
-  std::optional<Dispute> dispute;  ///< of RayParting::dispute
-};
-
-/// @param a,b the rays of one path on two devices, in the order in which they were traced
-PathComparison compare_paths(const pathtracer::PathId& path, std::span<const pathtracer::TracedRay> a,
-                             std::span<const pathtracer::TracedRay> b);
 
 enum class Ruling {
   a_right,  ///< b's answer is wrong by more than rounding explains

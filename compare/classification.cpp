@@ -192,9 +192,11 @@ std::optional<DifferenceClass> ClassifiedPath::worst() const {
 }
 
 std::uint64_t Classification::mismatches() const {
-  return parting_counts[static_cast<std::size_t>(DifferenceClass::mismatch)] +
-         static_cast<std::uint64_t>(
-             std::ranges::count_if(pixels, [](const ClassifiedPixel& pixel) { return pixel.wrong_sum != 0; }));
+  const auto wrong_paths = std::ranges::count_if(
+      paths, [](const ClassifiedPath& path) { return path.worst() == DifferenceClass::mismatch; });
+  const auto wrong_sums =
+      std::ranges::count_if(pixels, [](const ClassifiedPixel& pixel) { return pixel.wrong_sum != 0; });
+  return static_cast<std::uint64_t>(wrong_paths + wrong_sums);
 }
 
 Classification classify(Devices devices, const Image& image_a, const Image& image_b, std::uint32_t samples,

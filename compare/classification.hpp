@@ -34,7 +34,7 @@ struct Parting {
   std::uint32_t ulp_distance = 0;     ///< of the field
   double relative_difference = 0;     ///< likewise
   std::optional<std::uint32_t> exact_answer = {};  ///< of a ray with two answers: TracedRay::answer
-  std::string sentence = {};                            ///< what happened, for people
+  std::string sentence = {};                       ///< what happened, for people
 };
 
 /// A path that differs, or was looked at all the same.
@@ -72,7 +72,7 @@ struct Classification {
   ClassCounts parting_counts{};         ///< all partings, those of the survey included
   std::vector<ClassifiedPixel> pixels;  ///< classed ones, and surveyed ones with a mismatch, row by row
   std::vector<ClassifiedPath> paths;    ///< those with partings, in the order of pixels, then samples
-  std::uint64_t mismatches() const;     ///< partings of class mismatch and wrong sums
+  std::uint64_t mismatches() const;     ///< paths with a mismatch, and pixels with a wrong sum
 };
 
 /// Three renderers of the same scene and settings.

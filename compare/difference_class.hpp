@@ -27,6 +27,12 @@ inline constexpr std::size_t difference_class_count = 6;
 /// "rounding", "edge or vertex tie", "grazing visibility", "flipped decision", "coincident geometry", "mismatch".
 const char* name(DifferenceClass difference_class);
 
+/// Its colour in maps and reports, as sRGB 0xRRGGBB: cool ones for what rounding explains, red for a mismatch.
+std::uint32_t color(DifferenceClass difference_class);
+
+/// What it means, for people: a sentence.
+const char* meaning(DifferenceClass difference_class);
+
 /// How often each class occurred, by its number.
 using ClassCounts = std::array<std::uint64_t, difference_class_count>;
 

@@ -111,7 +111,7 @@ std::vector<Dispute> disputes_of(const JudgedSegment& segment) {
   const PathEvent &a = segment.a[segment.place.event], &b = segment.b[segment.place.event];
   const pathtracer::TracedRay ray_a = pathtracer::ray_of(segment.path, a), ray_b = pathtracer::ray_of(segment.path, b);
   const auto dispute = [&](const pathtracer::TracedRay& ray, std::uint32_t answer_a, std::uint32_t answer_b) {
-    return Dispute{.path = segment.path, .ray_index = 0, .ray = ray, .answer_a = answer_a, .answer_b = answer_b};
+    return Dispute{.ray = ray, .answer_a = answer_a, .answer_b = answer_b};
   };
   if (ray_a.origin == ray_b.origin && ray_a.direction == ray_b.direction && ray_a.t_max == ray_b.t_max)
     return {dispute(ray_a, ray_a.answer, ray_b.answer)};

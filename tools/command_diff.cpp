@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "compare/class_map.hpp"
 #include "compare/difference.hpp"
 #include "compare/flip/flip.hpp"
 #include "pathtracer/error.hpp"
@@ -82,6 +83,9 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
   add_rendering("b.exr", report.b);
   add_rendering("b.png", report.b);
   add("difference.exr", [&report] { return compare::signed_difference(report.a.image, report.b.image); }, metadata, {});
+  if (options.comparison.classify)
+    add("classes.png", [&report] { return compare::class_map(*report.classification, report.a.image, report.b.image); },
+        metadata, {});
   add("difference.png", [&report] { return compare::heat_map(report.a.image, report.b.image); }, metadata, {});
   if (options.comparison.metrics == compare::MetricSet::all) {
     add("flip.png", [&report] { return compare::error_map(*report.detailed_metrics->flip); }, metadata, {});
@@ -162,7 +166,7 @@ void add_diff_command(CLI::App& app, Action& action) {
       "  tandem diff scenes/cornell_box.obj --a vulkan:0 --b vulkan:1 --spp 64 --json diff.json --out diff\n"
       "  tandem diff scenes/foliage.obj --a cpu --trace-a query --b cpu --trace-b pipeline --min-bit-equal 1\n"
       "  tandem diff model.obj --a cpu --b vulkan --min-bit-equal 0.9999\n"
-      "  tandem diff model.obj --a cpu --b vulkan --arbiter cpu-exact\n"
+      "  tandem diff model.obj --a cpu --b vulkan --classify\n"
       "  tandem diff model.obj --a cpu --b vulkan --out today --baseline yesterday");
   command->callback([&action, options] { action = [options] { return diff(*options); }; });
 }

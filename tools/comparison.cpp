@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "pathtracer/error.hpp"
+#include "tools/interruption.hpp"
 #include "tools/option_values.hpp"
+#include "tools/progress_bar.hpp"
 
 namespace tandem::tools {
 
@@ -12,12 +14,15 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_trace_form(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
   add_named(command, "--metrics", options.metrics, compare::metric_set_names(),
             "all: FLIP and a table of regions too, which takes some seconds [basic]");
-  command
-      .add_option("--arbiter", options.arbiter,
-                  "Ask this device, for the pixels that differ, which of the two chose the right triangle: cpu-exact")
-      ->type_name("D3");
-  add_whole_number(command, "--arbiter-pixels", options.arbiter_pixels, 1, std::uint64_t{1} << 24,
-                   "Pixels to examine at most");
+  command.add_flag("--classify", options.classify,
+                   "Say why pixels differ: rounding, a tie, a decision that rounding turned, or a mismatch");
+  add_whole_number(command, "--classify-pixels", options.classification.pixel_limit, 1, std::uint64_t{1} << 24,
+                   "Pixels to classify at most, spread evenly over those that differ");
+  add_whole_number(command, "--survey", options.classification.survey_pixels, 0, std::uint64_t{1} << 24,
+                   "Pixels all over the picture whose paths are compared whether they differ or not");
+  command.add_option("--arbiter", options.arbiter, "The device that says which answer to a ray is right")
+      ->type_name("D3")
+      ->capture_default_str();
   command.add_flag("--probe", options.probe,
                    "Ask the scene's geometry in ways that the path tracer does not use, too: under masks, culling, "
                    "other ranges of t, moved and mirrored, updated, ...");
@@ -30,8 +35,8 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
 compare::Thresholds thresholds_for(const ComparisonOptions& options, const RenderOptions& render_options) {
   compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
   apply(options.thresholds, thresholds);
-  if (thresholds.tier == compare::Tier::statistical && !options.arbiter.empty())
-    throw pathtracer::Error("--arbiter means nothing in tier statistical, where every path of a and b is another");
+  if (thresholds.tier == compare::Tier::statistical && options.classify)
+    throw pathtracer::Error("--classify means nothing in tier statistical, where every path of a and b is another");
   return thresholds;
 }
 
@@ -39,7 +44,7 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
   ComparedDevices devices;
   devices.a = open_device(options.a, render_options);
   devices.b = open_device(options.b, render_options);
-  if (!options.arbiter.empty()) devices.arbiter = open_device(options.arbiter, render_options);
+  if (options.classify) devices.arbiter = open_device(options.arbiter, render_options);
   return devices;
 }
 
@@ -54,7 +59,7 @@ Comparison prepare(const ComparisonOptions& options, const RenderOptions& render
   a.prepare();
   b.prepare();
   std::optional<pathtracer::Renderer> arbiter;
-  if (devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
+  if (options.classify && devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
   JobSummary job_summary = summary(render_options, job);
   return {.options = options,
           .thresholds = std::move(thresholds),
@@ -65,6 +70,22 @@ Comparison prepare(const ComparisonOptions& options, const RenderOptions& render
           .b = std::move(b),
           .arbiter = std::move(arbiter)};
 }
+
+namespace {
+
+compare::Classification classify(Comparison& comparison, const DiffReport& report) {
+  ProgressBar bar("classification");
+  compare::Classification result = compare::classify(
+      {comparison.a, comparison.b, *comparison.arbiter, comparison.job.scene}, report.a.image, report.b.image,
+      comparison.job.samples, comparison.options.classification, [&](double fraction) {
+        bar.show(fraction);
+        return !interrupted();
+      });
+  if (interrupted()) throw Interrupted();
+  return result;
+}
+
+}  // namespace
 
 DiffReport compare_devices(Comparison& comparison) {
   const ComparisonOptions& options = comparison.options;
@@ -91,12 +112,11 @@ DiffReport compare_devices(Comparison& comparison) {
                                    comparison.b.trace());
     evidence.probe_mismatches = report.probes->count(compare::DifferenceClass::mismatch);
   }
-  report.verdict = compare::judge(evidence, report.thresholds);
   if (comparison.arbiter) {
-    report.arbiter = options.arbiter;
-    report.examination = compare::examine(comparison.a, comparison.b, *comparison.arbiter, report.a.image,
-                                          report.b.image, job.samples, job.scene, options.arbiter_pixels);
+    report.classification = classify(comparison, report);
+    evidence.mismatches = report.classification->mismatches();
   }
+  report.verdict = compare::judge(evidence, report.thresholds);
   return report;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "compare/classification.hpp"
 #include "compare/detailed_metrics.hpp"
 #include "compare/thresholds.hpp"
 #include "pathtracer/renderer.hpp"
@@ -31,11 +32,12 @@ struct ComparisonOptions {
   std::optional<compare::MetricSet> metrics;  ///< none: basic
   compare::Thresholds usual_thresholds;       ///< where neither `thresholds` nor the scene's file says otherwise
   ThresholdOptions thresholds;
-  BatchOptions batches;  ///< of tier statistical
-  std::string arbiter;   ///< the device that judges pixels that differ; empty: nobody is asked
-  std::uint64_t arbiter_pixels = 1000;
-  bool probe = false;               ///< whether the scene's geometry is asked in other ways too
-  std::uint64_t probe_rays = 2048;  ///< in each of the trials, at most
+  BatchOptions batches;   ///< of tier statistical
+  bool classify = false;  ///< say why pixels differ
+  compare::ClassificationOptions classification;
+  std::string arbiter = "cpu-exact";  ///< the device that knows the answers to rays, for `classify`
+  bool probe = false;                 ///< whether the scene's geometry is asked in other ways too
+  std::uint64_t probe_rays = 2048;    ///< in each of the trials, at most
 };
 
 /// Declares the options on the command, all but the devices a and b. `options` must outlive the parsing.
@@ -47,7 +49,7 @@ compare::Thresholds thresholds_for(const ComparisonOptions& options, const Rende
 
 struct ComparedDevices {
   rhi::DeviceHandle a, b;
-  rhi::DeviceHandle arbiter;  ///< null: nobody is asked
+  rhi::DeviceHandle arbiter;  ///< null: nothing is classified
 };
 
 /// Throws rhi::Error for a device that is not there.

@@ -7,8 +7,8 @@
 #include <iterator>
 
 #include "tools/baseline_report.hpp"
+#include "tools/classification_report.hpp"
 #include "tools/device_json.hpp"
-#include "tools/examination_report.hpp"
 #include "tools/metrics_report.hpp"
 #include "tools/probe_report.hpp"
 
@@ -83,7 +83,7 @@ std::string table(const DiffReport& report) {
   line("verdict", compare::name(report.verdict));
   for (const std::string& reason : report.verdict.reasons) line("", reason);
   if (report.statistics) text += '\n' + table(*report.statistics);
-  if (report.examination) text += '\n' + table(*report.examination, report.arbiter);
+  if (report.classification) text += '\n' + table(*report.classification);
   if (report.probes) text += '\n' + table(*report.probes);
   if (report.baseline) text += '\n' + table(*report.baseline);
   return text;
@@ -127,7 +127,7 @@ nlohmann::ordered_json to_json(const DiffReport& report) {
       json["thresholds"][compare::name(rule.metric)] = {{"limit", rule.limit}, {"reason", rule.reason}};
   if (report.detailed_metrics) json["metrics"] = to_json(*report.detailed_metrics);
   if (report.statistics) json["statistics"] = to_json(*report.statistics);
-  if (report.examination) json["arbiter"] = to_json(*report.examination, report.arbiter);
+  if (report.classification) json["classification"] = to_json(*report.classification);
   if (report.probes) json["probes"] = to_json(*report.probes);
   if (report.baseline) json["baseline"] = to_json(*report.baseline);
   json["version"] = TANDEM_VERSION;

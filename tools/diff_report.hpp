@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "compare/classification.hpp"
 #include "compare/detailed_metrics.hpp"
-#include "compare/examination.hpp"
 #include "compare/metrics.hpp"
 #include "compare/probe/probing.hpp"
 #include "compare/verdict.hpp"
@@ -26,11 +26,10 @@ struct DiffReport {
   std::optional<compare::DetailedMetrics> detailed_metrics;
   compare::Thresholds thresholds;
   compare::Verdict verdict;
-  std::optional<Statistics> statistics;             ///< in tier statistical; a and b are then means of batches
-  std::string arbiter;                              ///< the device that judged; empty: none was asked
-  std::optional<compare::Examination> examination;  ///< of the pixels that differ, where an arbiter was asked
-  std::optional<compare::Probing> probes;           ///< where it was asked to probe
-  std::optional<Baseline> baseline;                 ///< where a stored run was given
+  std::optional<Statistics> statistics;                   ///< in tier statistical; a and b are then means of batches
+  std::optional<compare::Classification> classification;  ///< where it was asked for
+  std::optional<compare::Probing> probes;                 ///< where it was asked to probe
+  std::optional<Baseline> baseline;                       ///< where a stored run was given
 };
 
 /// A sentence for each thing that is not as it must be, those of the verdict first. None: the exit code is 0.

@@ -13,7 +13,6 @@ namespace {
 
 using namespace tandem;
 using compare::Dispute;
-using compare::RayParting;
 using compare::Ruling;
 using pathtracer::RayKind;
 using pathtracer::TracedRay;
@@ -72,7 +71,7 @@ TracedRay upwards(float x, float y, RayKind kind = RayKind::closest) {
 }
 
 compare::Judgement judge(const pathtracer::Scene& scene, const TracedRay& ray, std::uint32_t a, std::uint32_t b) {
-  const Dispute dispute{.path = {}, .ray_index = 0, .ray = ray, .answer_a = a, .answer_b = b};
+  const Dispute dispute{.ray = ray, .answer_a = a, .answer_b = b};
   return compare::arbitrate({&dispute, 1}, scene,
                             [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); })[0];
 }
@@ -148,28 +147,6 @@ TEST_CASE("shadow rays are judged by whether anything is in the way") {
   CHECK(judge(scene, ray, 0, 1).ruling == Ruling::tie);
   ray.t_max = 1.001f;
   CHECK(judge(scene, ray, 0, 1).ruling == Ruling::b_right);
-}
-
-TEST_CASE("paths part where a ray or an answer first differs") {
-  TracedRay first = upwards(0.5f, 0.5f);
-  first.answer = 0;
-  TracedRay other_answer = first;
-  other_answer.answer = 1;
-  TracedRay other_ray = first;
-  other_ray.origin.x = std::nextafter(0.5f, 1.0f);
-  const TracedRay path[] = {first, first};
-  const TracedRay disputed[] = {first, other_answer};
-  const TracedRay rounded[] = {first, other_ray};
-  CHECK(compare::compare_paths({}, path, path).parting == RayParting::none);
-  CHECK(compare::compare_paths({}, path, std::span(path).first(1)).parting == RayParting::length);
-  CHECK(compare::compare_paths({}, path, rounded).parting == RayParting::rounding);
-  const compare::PathComparison comparison = compare::compare_paths({.pixel = {3, 4}, .sample = 5}, path, disputed);
-  CHECK(comparison.parting == RayParting::dispute);
-  REQUIRE(comparison.dispute.has_value());
-  CHECK(comparison.dispute->ray_index == 1);
-  CHECK(comparison.dispute->answer_a == 0);
-  CHECK(comparison.dispute->answer_b == 1);
-  CHECK(comparison.dispute->path.sample == 5);
 }
 
 }  // namespace
