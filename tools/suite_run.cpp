@@ -72,7 +72,7 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report, std::st
   ComparisonOptions options = cell.comparison;
   if (cell.report) options = with_metrics_for_page(options);
   ComparedDevices devices{.a = device(options.a, cell.render), .b = device(options.b, cell.render), .arbiter = {}};
-  if (!options.arbiter.empty()) devices.arbiter = device(options.arbiter, cell.render);
+  if (options.classify) devices.arbiter = device(options.arbiter, cell.render);
   const Json key = key_of(cell, job, devices, program_);
   if (!fresh_)
     if (std::optional<Json> earlier = read_result(folder_, cell_path(cell, ".json"), key))
