@@ -41,7 +41,7 @@ TEST_CASE("perturbed states are near the state, on all sides, and always the sam
   REQUIRE(states.size() == variation_count);
   CHECK(states == perturbed_states(state));
   constexpr double most = 33 * double{std::numeric_limits<float>::epsilon()};  // 32 and the rounding of the result
-  int above = 0, moved = 0;
+  int above = 0, below = 0, moved = 0;
   for (const PathEvent& each : states) {
     CHECK(glm::distance(glm::dvec3(each.vector(word::segment_origin)), glm::dvec3(100, 1, -3)) <
           2 * most * 100);  // the diagonal of a cube
@@ -50,12 +50,15 @@ TEST_CASE("perturbed states are near the state, on all sides, and always the sam
     CHECK(std::abs(throughput.x / 0.5 - 1) < most);
     CHECK(throughput.z == 0);  // black stays black
     above += throughput.x > 0.5f ? 1 : 0;
+    below += throughput.x < 0.5f ? 1 : 0;
     moved += each != state ? 1 : 0;
     CHECK(each.words[word::depth] == state.words[word::depth]);
     CHECK(each.words[15] == state.words[15]);
   }
   CHECK(moved == int{variation_count});
-  CHECK(above == int{variation_count} / 2);
+  // Half of them each, but for those that are too small to be seen.
+  CHECK(above >= 24);
+  CHECK(below >= 24);
 }
 
 TEST_CASE("a decision is explained by a variation that makes it, after the same course") {
