@@ -76,7 +76,7 @@ ComparisonOptions with_metrics_for_page(ComparisonOptions options) {
 }
 
 std::string report_page(Comparison& comparison, const DiffReport& report) {
-  const compare::Classification* const classification = nullptr;
+  const compare::Classification* const classification = report.classification ? &*report.classification : nullptr;
   const compare::Ranking ranking = compare::rank_pixels(report.a.image, report.b.image, classification, ranked_pixels);
   const std::optional<compare::DetailedMetrics>& metrics = report.detailed_metrics;
   return compare::page(
