@@ -41,14 +41,6 @@ EntryPoint ray_generation_shader(PathTraceTask task) {
   }
 }
 
-/// Other tasks than the picture are rare, so fewer sets are built for them.
-Features rounded(Features needed, PathTraceTask task) {
-  const Features features = built_features(needed);
-  constexpr Features light = feature::transparency | feature::spheres | feature::cameras;
-  if (task == PathTraceTask::picture || (features & ~light) == 0) return features;
-  return feature::all;
-}
-
 rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoint& shader, Features features) {
   return device.create_compute_pipeline({.shader = device.create_shader_module({shader.spirv, shader.label}),
                                          .specialization = specialization(features),
@@ -94,8 +86,15 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, PathTraceTask task, Fea
 
 }  // namespace
 
+Features task_features(Features needed, PathTraceTask task) {
+  const Features features = built_features(needed);
+  constexpr Features light = feature::transparency | feature::spheres | feature::cameras;
+  if (task == PathTraceTask::picture || (features & ~light) == 0) return features;
+  return feature::all;
+}
+
 PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, Features features, PathTraceTask task)
-    : form_(form), features_(rounded(features, task)) {
+    : form_(form), features_(task_features(features, task)) {
   if (form == TraceForm::query) {
     compute_ = compute_pipeline(device, compute_shader(task), features_);
     pipeline_ = compute_;

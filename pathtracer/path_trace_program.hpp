@@ -19,6 +19,9 @@ enum class PathTraceTask {
   answer      ///< shaders/ray_answer.glsl: traces one ray again
 };
 
+/// What a program for `features` has built in: tasks other than the picture are rare, so fewer sets are built for them.
+Features task_features(Features features, PathTraceTask task);
+
 /// The path tracer's shaders in one of their forms, ready to run on a device.
 class PathTraceProgram {
  public:

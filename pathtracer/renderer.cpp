@@ -31,8 +31,9 @@ std::string text_of(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.
 }  // namespace
 
 Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
-                   std::optional<TraceForm> trace)
+                   std::optional<TraceForm> trace, ProgramStoreHandle programs)
     : device_(std::move(device)),
+      programs_(programs ? std::move(programs) : std::make_shared<ProgramStore>(device_)),
       scene_name_(scene.name),
       camera_(checked_camera(scene, settings)),
       trace_(choose_trace_form(device_->info(), trace)),
@@ -45,17 +46,12 @@ Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSet
   restart(settings);
 }
 
-const PathTraceProgram& Renderer::program(PathTraceTask task) {
-  const auto known = programs_.find(task);
-  if (known != programs_.end()) return known->second;
-  return programs_.emplace(task, PathTraceProgram(*device_, trace_, features_, task)).first->second;
-}
+const PathTraceProgram& Renderer::program(PathTraceTask task) { return programs_->program(trace_, features_, task); }
 
 void Renderer::choose_features(const RenderSettings& settings) {
   const Features features = built_features(scene_.features() | features_of(settings));
   if (features == features_) return;
   features_ = features;
-  programs_.clear();
   scene_group_ = nullptr;
   picture_group_ = nullptr;
 }

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +13,7 @@
 #include "pathtracer/image.hpp"
 #include "pathtracer/image_io.hpp"
 #include "pathtracer/path_event.hpp"
-#include "pathtracer/path_trace_program.hpp"
+#include "pathtracer/program_store.hpp"
 #include "pathtracer/render_settings.hpp"
 #include "pathtracer/scene.hpp"
 #include "pathtracer/trace_form.hpp"
@@ -35,8 +34,9 @@ class Renderer {
   /// Uploads the scene and builds its acceleration structures. Throws Error for bad settings, rhi::Error for what the
   /// device refuses (a form of tracing that it lacks, a scene or picture that is too large).
   /// @param trace as choose_trace_form takes it
+  /// @param programs of the same device, to share with other renderers; absent: an own one
   Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
-           std::optional<TraceForm> trace = {});
+           std::optional<TraceForm> trace = {}, ProgramStoreHandle programs = {});
 
   /// Makes what only render needs, as render would otherwise when it is first called: the program that renders. Throws
   /// rhi::Error for a picture that is too large for the device.
@@ -101,13 +101,13 @@ class Renderer {
   void collect_ray_counts();
 
   rhi::DeviceHandle device_;
+  ProgramStoreHandle programs_;
   std::string scene_name_;
   Camera camera_;
   TraceForm trace_;
   DeviceScene scene_;
   RenderSettings settings_;
-  Features features_ = ~Features{0};                    ///< that are built in, for the scene and the settings
-  std::map<PathTraceTask, PathTraceProgram> programs_;  ///< those that were needed so far
+  Features features_ = ~Features{0};  ///< that are built in, for the scene and the settings
   glm::vec3 background_{0};
   std::vector<std::string> warnings_;
 

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -34,6 +35,17 @@ struct Options {
   std::uint32_t size = 64;
   std::uint32_t samples = 4;
 };
+
+/// A device, and its programs for all scenes.
+struct Device {
+  rhi::DeviceHandle handle;
+  pathtracer::ProgramStoreHandle programs;
+};
+
+Device open(const std::string& name) {
+  const rhi::DeviceHandle handle = create_device({.name = name});
+  return {handle, std::make_shared<pathtracer::ProgramStore>(handle)};
+}
 
 struct Tally {
   std::uint64_t pixels = 0, differing = 0, alarms = 0;
@@ -93,15 +105,17 @@ void print_mismatches(const std::filesystem::path& path, std::uint32_t seed, con
 }
 
 /// All seeds of one scene. Alarms are printed as they come.
-Tally examine(const std::filesystem::path& path, const Options& options, const rhi::DeviceHandle& device_a,
-              const rhi::DeviceHandle& device_b, const rhi::DeviceHandle& device_arbiter) {
+Tally examine(const std::filesystem::path& path, const Options& options, const Device& device_a, const Device& device_b,
+              const Device& device_arbiter) {
   const pathtracer::Scene scene = pathtracer::load_scene(path);
   const compare::Thresholds thresholds = compare::thresholds_of(path);
   pathtracer::RenderSettings settings = pathtracer::render_settings(scene.settings);
   settings.width = settings.height = options.size;
   settings.planned_samples = options.samples;
-  pathtracer::Renderer a(device_a, scene, settings), b(device_b, scene, settings);
-  pathtracer::Renderer arbiter(device_arbiter, scene, settings);
+  const auto renderer = [&](const Device& device) {
+    return pathtracer::Renderer(device.handle, scene, settings, {}, device.programs);
+  };
+  pathtracer::Renderer a = renderer(device_a), b = renderer(device_b), arbiter = renderer(device_arbiter);
   Tally tally;
   for (std::uint32_t i = 0; i < options.seeds; ++i) {
     settings.seed = options.first_seed + i;
@@ -127,8 +141,7 @@ Tally examine(const std::filesystem::path& path, const Options& options, const r
 
 int run(const Options& options) {
   const std::vector<std::filesystem::path> scenes = scenes_of(options);
-  const rhi::DeviceHandle a = create_device({.name = options.a}), b = create_device({.name = options.b});
-  const rhi::DeviceHandle arbiter = create_device({.name = options.arbiter});
+  const Device a = open(options.a), b = open(options.b), arbiter = open(options.arbiter);
   print_header();
   Tally all;
   for (const std::filesystem::path& scene : scenes) {
