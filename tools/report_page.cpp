@@ -87,7 +87,10 @@ std::string report_page(Comparison& comparison, const DiffReport& report) {
        .flip = metrics && metrics->flip ? &*metrics->flip : nullptr,
        .classification = classification,
        .ranking = ranking,
-       .paths = recorded_paths(comparison, classification, ranking)});
+       // Pictures of other random numbers have no paths that belong together.
+       .paths = report.thresholds.tier == compare::Tier::statistical
+                    ? std::vector<compare::RecordedPath>()
+                    : recorded_paths(comparison, classification, ranking)});
 }
 
 }  // namespace tandem::tools
