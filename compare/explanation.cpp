@@ -87,12 +87,12 @@ std::optional<FirstDifference> first_difference(std::span<const EventPair> pairs
 ObservedDifferences observed_differences(std::span<const EventPair> pairs) {
   ObservedDifferences result;
   for (const EventPair& pair : pairs) {
-    if (!pair.a || !pair.b) continue;
+    if (differs(pair)) continue;
     for (const EventField& field : fields_of(pair.kind())) {
       if (field.tier != FieldTier::observed) continue;
       result.fields += 1;
       result.differing += differs(pair, field) ? 1u : 0u;
-      result.ulp_distance = std::max(result.ulp_distance, ulp_distance(field, *pair.a, *pair.b));
+      result.relative_difference = std::max(result.relative_difference, relative_difference(field, *pair.a, *pair.b));
     }
   }
   return result;

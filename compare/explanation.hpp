@@ -46,9 +46,9 @@ std::optional<FirstDifference> first_difference(std::span<const EventPair> pairs
 
 /// How what devices report of hits differs, although no result depends on it.
 struct ObservedDifferences {
-  std::size_t fields = 0;          ///< observed fields of events that both have
+  std::size_t fields = 0;          ///< observed fields of events that are the same in all else
   std::size_t differing = 0;       ///< of them
-  std::uint32_t ulp_distance = 0;  ///< the largest
+  double relative_difference = 0;  ///< the largest; of barycentrics as they are
 };
 ObservedDifferences observed_differences(std::span<const EventPair> pairs);
 

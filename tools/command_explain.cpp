@@ -58,7 +58,7 @@ void add_explain_command(CLI::App& app, Action& action) {
   command->footer(
       "Exit code: 0 nothing but rounding and ties, 1 a mismatch: one of the devices is wrong, 2 error.\n"
       "Examples:\n"
-      "  tandem explain scenes/house.obj --pixel 200,310 --a cpu --b vulkan\n"
+      "  tandem explain scenes/cornell_box.obj --pixel 248,109 --a cpu --b vulkan\n"
       "  tandem explain scenes/foliage.obj --pixel 90,17 --sample 3 --a cpu --b vulkan --all-events --json path.json");
   command->callback([&action, options] { action = [options] { return run(*options); }; });
 }

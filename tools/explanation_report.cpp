@@ -149,7 +149,7 @@ nlohmann::ordered_json to_json(const Explanation& explanation) {
   for (const ExplainedSample& sample : explanation.samples) json["samples"].push_back(sample_json(sample));
   json["observed"] = {{"fields", explanation.observed.fields},
                       {"differing", explanation.observed.differing},
-                      {"ulp", explanation.observed.ulp_distance}};
+                      {"relative", explanation.observed.relative_difference}};
   json["events"] = events_json(explanation.events, explanation.names);
   if (explanation.probing) json["probes"] = to_json(*explanation.probing);
   json["version"] = TANDEM_VERSION;

@@ -44,8 +44,11 @@ std::string_view color_of(Row::Weight weight) {
   }
 }
 
-std::string ulp_text(std::uint32_t distance) {
-  return distance == no_distance ? std::string() : fmt::format("{} ULP", distance);
+/// Units in the last place of what is that close, else relative; nothing for what is no number.
+std::string distance_text(std::uint32_t ulp, double relative) {
+  constexpr std::uint32_t close = 1u << 20u;
+  if (ulp < close) return fmt::format("{} ULP", ulp);
+  return std::isfinite(relative) ? fmt::format("{:.2g} relative", relative) : std::string();
 }
 
 /// What an event that is the same on both devices is told by, in one line.
@@ -90,7 +93,8 @@ Row field_row(const EventPair& pair, const EventField& field, const compare::Sce
   } else if (compare::differs(pair, field)) {
     row.weight = field.tier == compare::FieldTier::observed ? Row::Weight::observed : Row::Weight::differing;
     row.b = names.text(field, *pair.b);
-    row.note = ulp_text(compare::ulp_distance(field, *pair.a, *pair.b));
+    row.note = distance_text(compare::ulp_distance(field, *pair.a, *pair.b),
+                             compare::relative_difference(field, *pair.a, *pair.b));
   }
   return row;
 }
@@ -218,7 +222,7 @@ void print_first(const Explanation& explanation, const Line& line) {
   line("  a", explanation.names.text(*first.field, *pair.a));
   line("  b", explanation.names.text(*first.field, *pair.b));
   if (first.ulp_distance != no_distance)
-    line("  distance", fmt::format("{}, {:.3g} relative", ulp_text(first.ulp_distance), first.relative_difference));
+    line("  distance", fmt::format("{} ULP, {:.3g} relative", first.ulp_distance, first.relative_difference));
 }
 
 void print_partings(const Explanation& explanation, const Line& line) {
@@ -243,8 +247,9 @@ void print_partings(const Explanation& explanation, const Line& line) {
 
 void print_observed(const compare::ObservedDifferences& observed, const Line& line) {
   if (observed.differing == 0) return;
-  line("reported", fmt::format("t and barycentrics of hits: {} of {} differ, by up to {}; no result depends on them",
-                               observed.differing, observed.fields, ulp_text(observed.ulp_distance)));
+  line("reported",
+       fmt::format("t and barycentrics of hits: {} of {} differ, by up to {:.2g}; no result depends on them",
+                   observed.differing, observed.fields, observed.relative_difference));
 }
 
 }  // namespace
