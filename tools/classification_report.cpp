@@ -56,9 +56,9 @@ std::string table(const compare::Classification& classification) {
     const auto difference_class = static_cast<DifferenceClass>(i);
     const bool zero = classification.pixel_counts[i] == 0 && classification.parting_counts[i] == 0;
     if (zero && difference_class != DifferenceClass::mismatch) continue;
-    line(compare::name(difference_class),
-         fmt::format("{} pixels, {} times.{}{}", classification.pixel_counts[i], classification.parting_counts[i],
-                     zero ? "" : " ", zero ? "" : compare::meaning(difference_class)));
+    line("", fmt::format("{}: {} pixels, {} times.{}{}", compare::name(difference_class),
+                         classification.pixel_counts[i], classification.parting_counts[i], zero ? "" : " ",
+                         zero ? "" : compare::meaning(difference_class)));
   }
   std::size_t wrong_sums = 0;
   for (const compare::ClassifiedPixel& pixel : classification.pixels) {
