@@ -100,7 +100,8 @@ TANDEM_DEVICE_TEST("Another albedo is a mismatch of the weight with which a path
   const bool is_albedo = field_of(*parting) == "light value: bsdf" || field_of(*parting) == "scatter: weight";
   CHECK(is_albedo);
   CHECK(parting->segment == 0);
-  CHECK(found.count(DifferenceClass::mismatch) == found.result.mismatches());
+  CHECK(found.result.mismatches() > 0);
+  CHECK(found.count(DifferenceClass::mismatch) >= found.result.mismatches());  // a path may have several
 }
 
 TANDEM_DEVICE_TEST("Another light is a mismatch of what arrives from it") {
