@@ -45,21 +45,27 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
   devices.a = open_device(options.a, render_options);
   devices.b = open_device(options.b, render_options);
   if (options.classify) devices.arbiter = open_device(options.arbiter, render_options);
+  devices.programs_a = std::make_shared<pathtracer::ProgramStore>(devices.a);
+  devices.programs_b = std::make_shared<pathtracer::ProgramStore>(devices.b);
+  if (devices.arbiter) devices.programs_arbiter = std::make_shared<pathtracer::ProgramStore>(devices.arbiter);
   return devices;
 }
 
 Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
                    ComparedDevices devices) {
   compare::Thresholds thresholds = thresholds_for(options, render_options);
-  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace) {
-    return pathtracer::Renderer(device, job.scene, job.settings, trace);
+  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace,
+                            const pathtracer::ProgramStoreHandle& programs) {
+    return pathtracer::Renderer(device, job.scene, job.settings, trace, programs);
   };
-  pathtracer::Renderer a = renderer(devices.a, options.trace_a ? options.trace_a : render_options.trace);
-  pathtracer::Renderer b = renderer(devices.b, options.trace_b ? options.trace_b : render_options.trace);
+  pathtracer::Renderer a =
+      renderer(devices.a, options.trace_a ? options.trace_a : render_options.trace, devices.programs_a);
+  pathtracer::Renderer b =
+      renderer(devices.b, options.trace_b ? options.trace_b : render_options.trace, devices.programs_b);
   a.prepare();
   b.prepare();
   std::optional<pathtracer::Renderer> arbiter;
-  if (options.classify && devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}));
+  if (options.classify && devices.arbiter) arbiter.emplace(renderer(devices.arbiter, {}, devices.programs_arbiter));
   JobSummary job_summary = summary(render_options, job);
   return {.options = options,
           .thresholds = std::move(thresholds),

@@ -50,6 +50,8 @@ compare::Thresholds thresholds_for(const ComparisonOptions& options, const Rende
 struct ComparedDevices {
   rhi::DeviceHandle a, b;
   rhi::DeviceHandle arbiter;  ///< null: nothing is classified
+  /// The programs of each, for comparisons of several scenes; null: every comparison has its own.
+  pathtracer::ProgramStoreHandle programs_a, programs_b, programs_arbiter;
 };
 
 /// Throws rhi::Error for a device that is not there.

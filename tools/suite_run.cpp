@@ -61,18 +61,27 @@ std::filesystem::path cell_path(const SuiteCell& cell, const char* ending) {
 SuiteRun::SuiteRun(std::filesystem::path folder, bool fresh)
     : folder_(std::move(folder)), fresh_(fresh), program_(program_hash()) {}
 
-rhi::DeviceHandle SuiteRun::device(const std::string& name, const RenderOptions& options) {
-  rhi::DeviceHandle& device = devices_[name];
-  if (!device) device = open_device(name, options);
-  return device;
+const SuiteRun::OpenDevice& SuiteRun::device(const std::string& name, const RenderOptions& options) {
+  const auto known = devices_.find(name);
+  if (known != devices_.end()) return known->second;
+  OpenDevice device{.handle = open_device(name, options), .programs = {}};
+  device.programs = std::make_shared<pathtracer::ProgramStore>(device.handle);
+  return devices_.emplace(name, std::move(device)).first->second;
 }
 
 SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report, std::string& page) {
   RenderJob job = load_job(cell.render);
   ComparisonOptions options = cell.comparison;
   if (cell.report) options = with_metrics_for_page(options);
-  ComparedDevices devices{.a = device(options.a, cell.render), .b = device(options.b, cell.render), .arbiter = {}};
-  if (options.classify) devices.arbiter = device(options.arbiter, cell.render);
+  ComparedDevices devices;
+  const auto open = [&](const std::string& name, rhi::DeviceHandle& handle, pathtracer::ProgramStoreHandle& programs) {
+    const OpenDevice& opened = device(name, cell.render);
+    handle = opened.handle;
+    programs = opened.programs;
+  };
+  open(options.a, devices.a, devices.programs_a);
+  open(options.b, devices.b, devices.programs_b);
+  if (options.classify) open(options.arbiter, devices.arbiter, devices.programs_arbiter);
   const Json key = key_of(cell, job, devices, program_);
   if (!fresh_)
     if (std::optional<Json> earlier = read_result(folder_, cell_path(cell, ".json"), key))

@@ -39,13 +39,19 @@ class SuiteRun {
   SuiteResult run(const SuiteCell& cell);
 
  private:
-  rhi::DeviceHandle device(const std::string& name, const RenderOptions& options);
+  /// A device, and its programs for all cells.
+  struct OpenDevice {
+    rhi::DeviceHandle handle;
+    pathtracer::ProgramStoreHandle programs;
+  };
+
+  const OpenDevice& device(const std::string& name, const RenderOptions& options);
   SuiteResult try_run(const SuiteCell& cell, DiffReport& report, std::string& page);
 
   std::filesystem::path folder_;
   bool fresh_;
   std::string program_;
-  std::map<std::string, rhi::DeviceHandle> devices_;
+  std::map<std::string, OpenDevice> devices_;
 };
 
 /// Where the cells' files are, in the folder of a suite.
