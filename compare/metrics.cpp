@@ -31,6 +31,7 @@ Metrics measure(const pathtracer::Image& a, const pathtracer::Image& b) {
   double sum_b = 0.0;
   double sum_abs = 0.0;
   double sum_squares = 0.0;
+  double sum_pixel_squares = 0.0;
   Metrics metrics;
   metrics.pixels = a.pixels.size();
   for (std::size_t index = 0; index < a.pixels.size(); ++index) {
@@ -45,10 +46,12 @@ Metrics measure(const pathtracer::Image& a, const pathtracer::Image& b) {
     bit_equal += is_bit_equal(pixel_a, pixel_b) ? 1 : 0;
     within_1e5 += is_within(pixel_a, pixel_b, 1e-5) ? 1 : 0;
     within_1e3 += is_within(pixel_a, pixel_b, 1e-3) ? 1 : 0;
+    double pixel_difference = 0.0;
     for (int channel = 0; channel < channels; ++channel) {
       const double value_a = pixel_a[channel];
       const double value_b = pixel_b[channel];
       const double difference = std::abs(value_a - value_b);
+      pixel_difference += (value_a - value_b) / channels;
       sum_a += value_a;
       sum_b += value_b;
       sum_abs += difference;
@@ -56,6 +59,7 @@ Metrics measure(const pathtracer::Image& a, const pathtracer::Image& b) {
       metrics.max_abs = std::max(metrics.max_abs, difference);
       metrics.peak = std::max({metrics.peak, std::abs(value_a), std::abs(value_b)});
     }
+    sum_pixel_squares += pixel_difference * pixel_difference;
   }
 
   const auto pixels = static_cast<double>(metrics.pixels);
@@ -67,6 +71,7 @@ Metrics measure(const pathtracer::Image& a, const pathtracer::Image& b) {
   metrics.mean_a = sum_a / values;
   metrics.mean_b = sum_b / values;
   metrics.mean_abs = sum_abs / values;
+  metrics.mean_noise = std::sqrt(sum_pixel_squares) / static_cast<double>(finite);
   metrics.rmse = std::sqrt(sum_squares / values);
   // Zero, or so small that its square vanished: then the ratio to the peak means nothing.
   if (metrics.rmse > 0.0) metrics.psnr = 20.0 * std::log10(metrics.peak / metrics.rmse);

@@ -22,6 +22,9 @@ struct Metrics {
   double mean_abs = 0.0;    ///< mean |a - b| over pixels and channels
   double mean_a = 0.0;      ///< mean over pixels and channels
   double mean_b = 0.0;
+  /// What |mean_a - mean_b| would come to if the signs of the pixels' differences were chance: the root of the sum of
+  /// their squares (of the means over channels), over the number of pixels.
+  double mean_noise = 0.0;
   double rmse = 0.0;               ///< root of the mean of (a - b)^2 over pixels and channels
   double peak = 0.0;               ///< largest |value| of any channel of either image
   std::optional<double> psnr;      ///< 20 log10(peak / rmse) in dB; none when rmse is 0

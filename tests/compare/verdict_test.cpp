@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace tandem::compare {
 namespace {
@@ -125,6 +126,25 @@ TEST_CASE("tier statistical asks for p-values, not for pixels") {
   CHECK_THROWS_AS(judge({.metrics = metrics}, of(Tier::statistical)), std::invalid_argument);
   metrics.non_finite_a = 1;
   CHECK_FALSE(judge(evidence(1.0), of(Tier::statistical)).agree);
+}
+
+TEST_CASE("few pixels that differ by much are noise of the mean, many that differ by the same are not") {
+  pathtracer::Image a{.width = 64, .height = 64, .pixels = std::vector<glm::vec3>(4096, glm::vec3(0.5F))};
+  pathtracer::Image b = a;
+  for (std::size_t i = 0; i < 16; ++i) b.pixels[i] = glm::vec3(5.0F);
+  // 16 pixels of one sign are four standard errors, and the least that chance could not be.
+  const Metrics few = measure(a, b);
+  CHECK(few.mean_b > 1.01 * few.mean_a);
+  CHECK(judge({.metrics = few, .bias = {}}).agree);
+  for (std::size_t i = 0; i < 40; ++i) b.pixels[i] = glm::vec3(5.0F);
+  CHECK_FALSE(judge({.metrics = measure(a, b), .bias = {}}).agree);
+
+  b = a;
+  for (glm::vec3& pixel : b.pixels) pixel *= 1.0003F;
+  const Metrics all = measure(a, b);
+  CHECK(all.within_1e3 == 1.0);
+  CHECK(all.mean_noise == doctest::Approx(1.5e-4 / 64).epsilon(0.01));  // rounding of 0.50015
+  CHECK_FALSE(judge({.metrics = all, .bias = {}}).agree);
 }
 
 }  // namespace

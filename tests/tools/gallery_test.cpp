@@ -26,9 +26,7 @@ std::vector<std::string> arguments(const std::string& list, const std::vector<st
 TEST_CASE("gallery renders every scene that ships, alike on two devices, into a page") {
   const TemporaryFolder folder;
   const Outcome outcome = run_tandem(arguments(gallery, {"--size", "24x24", "--spp", "1"}), {.folder = folder.path()});
-  // One path that takes another course may move the mean of so small a picture beyond the tolerance: exit code 1.
-  CHECK(outcome.exit_code >= 0);
-  CHECK(outcome.exit_code <= 1);
+  CHECK(outcome.exit_code == 0);
   CHECK(outcome.errors == "");
   const nlohmann::json listed = nlohmann::json::parse(read_text(gallery)).at("scenes");
   const nlohmann::json report = nlohmann::json::parse(read_text(folder.path() / "out/gallery.json"));
