@@ -44,7 +44,9 @@ int main(int argc, char** argv) {
     const pathtracer::Scene scene = pathtracer::load_obj(argv[1]);
     const compare::Metrics metrics = compare::measure(render(scene, 1), render(scene, 0));
     // The result of the CPU device does not depend on the number of threads, so every bit must be the same.
-    const compare::Verdict verdict = compare::judge(metrics, {.bit_equal = 1.0});
+    compare::Thresholds thresholds;
+    thresholds.tier = compare::Tier::exact;
+    const compare::Verdict verdict = compare::judge({.metrics = metrics}, thresholds);
     std::printf("mean radiance %g, %g of the pixels bit-equal: %s\n", metrics.mean_a, metrics.bit_equal,
                 compare::name(verdict));
     return verdict.agree && metrics.mean_a > 0.0 ? 0 : 1;
