@@ -118,9 +118,7 @@ struct PathSummary {
   std::uint32_t event_count = 0;
   /// Of all words of all events but event_word::hit_t and hit_barycentrics.
   std::uint32_t digest = 0;
-  std::array<std::uint32_t, 2> reserved{};
-
-  bool operator==(const PathSummary&) const = default;
+  std::array<std::uint32_t, 2> reserved{};  ///< whatever the device has there
 };
 static_assert(sizeof(PathSummary) == 32);
 
