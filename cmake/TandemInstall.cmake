@@ -30,21 +30,23 @@ endforeach()
 install(TARGETS ${tandem_installed_libraries} EXPORT TandemTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT TandemTargets NAMESPACE Tandem:: DESTINATION "${TANDEM_INSTALL_PACKAGE}")
 
-foreach(folder rhi devices glsl pathtracer compare conformance study rhi_cpu/kernel)
+foreach(folder base rhi devices pathtracer compare conformance rhi_cpu/kernel)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}" DESTINATION "${TANDEM_INSTALL_HEADERS}/${parent}"
           FILES_MATCHING PATTERN "*.hpp")
 endforeach()
 # Of the backends only what makes a device; the rest of their headers is theirs.
-foreach(header rhi_cpu/device.hpp rhi_cpu/precompiled_kernel.hpp rhi_vulkan/device.hpp)
+foreach(header rhi_cpu/device.hpp rhi_cpu/cache/precompiled_kernel.hpp rhi_vulkan/device.hpp)
   cmake_path(GET header PARENT_PATH parent)
   install(FILES "${PROJECT_SOURCE_DIR}/${header}" DESTINATION "${TANDEM_INSTALL_HEADERS}/${parent}")
 endforeach()
 
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${TANDEM_INSTALL_DATA}"
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.rgen" PATTERN "*.rmiss" PATTERN "*.rchit" PATTERN "*.rahit" PATTERN "*.rint")
+# Whole, but for what makes scenes and what needs files that do not ship; schemas lie where the scenes look for them.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/scenes" DESTINATION "${TANDEM_INSTALL_DATA}"
-        FILES_MATCHING PATTERN "*.obj" PATTERN "*.mtl" PATTERN "*.png" PATTERN "*.glb")
+        PATTERN generators EXCLUDE PATTERN thesis EXCLUDE)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs/schema" DESTINATION "${TANDEM_INSTALL_DATA}/docs")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 configure_package_config_file(

@@ -114,7 +114,7 @@ namespace tandem::@name@ {
 
 #include <span>
 
-#include "rhi_cpu/precompiled_kernel.hpp"
+#include "rhi_cpu/cache/precompiled_kernel.hpp"
 
 namespace tandem::@name@ {
 

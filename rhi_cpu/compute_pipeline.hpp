@@ -1,8 +1,8 @@
 #pragma once
 
 #include "rhi/compute_pipeline.hpp"
+#include "rhi_cpu/cache/kernel_store.hpp"
 #include "rhi_cpu/device_state.hpp"
-#include "rhi_cpu/kernel_store.hpp"
 
 namespace tandem::cpu {
 

@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "rhi/device.hpp"
-#include "rhi_cpu/precompiled_kernel.hpp"
+#include "rhi_cpu/cache/precompiled_kernel.hpp"
 
 /// The rhi on the CPU: shaders run as native code translated from their SPIR-V. Device "cpu" traces rays with Embree,
-/// "cpu-exact" with the tracer of rhi_cpu/exact, which is slow and does not round.
+/// "cpu-exact" with the tracer of rhi_cpu/trace/exact, which is slow and does not round.
 namespace tandem::cpu {
 
 /// "cpu" and "cpu-exact".

@@ -9,8 +9,8 @@
 #include "rhi/device.hpp"
 #include "rhi/error.hpp"
 #include "rhi_cpu/bottom_level_registry.hpp"
-#include "rhi_cpu/kernel_store.hpp"
-#include "rhi_cpu/precompiled_kernel.hpp"
+#include "rhi_cpu/cache/kernel_store.hpp"
+#include "rhi_cpu/cache/precompiled_kernel.hpp"
 #include "rhi_cpu/tracer.hpp"
 #include "rhi_cpu/workers.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "rhi_cpu/pipeline_functions.hpp"
+#include "rhi_cpu/trace_ray.hpp"
 
 namespace tandem::cpu {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "rhi/ray_tracing_pipeline.hpp"
+#include "rhi_cpu/cache/kernel_store.hpp"
 #include "rhi_cpu/device_state.hpp"
-#include "rhi_cpu/kernel_store.hpp"
 
 namespace tandem::cpu {
 

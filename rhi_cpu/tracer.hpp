@@ -7,8 +7,8 @@
 #include <string_view>
 #include <variant>
 
-#include "rhi_cpu/exact/acceleration_structure.hpp"
-#include "rhi_cpu/trace/acceleration_structure.hpp"
+#include "rhi_cpu/trace/embree/acceleration_structure.hpp"
+#include "rhi_cpu/trace/exact/acceleration_structure.hpp"
 
 namespace tandem::cpu {
 

@@ -1,5 +1,5 @@
 // What a scene and its settings need of the path tracer, as specialisation constants: what is off leaves no trace in the
-// code that a device runs. pathtracer/features.hpp says the same on the host and which sets of them are built in. A
+// code that a device runs. pathtracer/render/features.hpp says the same on the host and which sets of them are built in. A
 // feature that is on and not used changes no bit of the picture.
 
 #ifndef TANDEM_FEATURES

@@ -11,7 +11,7 @@
 #include "scene.glsl"
 #include "trace.glsl"
 
-// pathtracer/renderer_first_hits.cpp says the same.
+// pathtracer/render/renderer_first_hits.cpp says the same.
 struct FirstHit {
   vec3 albedo;     // sum over the samples that hit anything
   float depth;     // likewise, distance from where the ray begins

@@ -1,4 +1,4 @@
-// What the path tracer reads and writes. The host side is pathtracer/scene_buffers.hpp, which must say the same; a test
+// What the path tracer reads and writes. The host side is pathtracer/scene/buffers.hpp, which must say the same; a test
 // holds the two together through reflection.
 
 #ifndef TANDEM_SCENE

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include "pathtracer/error.hpp"
-#include "pathtracer/image_io.hpp"
-#include "pathtracer/text_file.hpp"
-#include "tools/device_json.hpp"
-#include "tools/diff_report.hpp"
+#include "base/error.hpp"
+#include "base/text_file.hpp"
+#include "pathtracer/image/image_io.hpp"
+#include "tools/report/device_json.hpp"
+#include "tools/report/diff_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::json;
 
 [[noreturn]] void refuse(const std::filesystem::path& folder, const std::string& reason) {
-  throw pathtracer::Error(fmt::format("'{}' holds no run of 'tandem diff --out': {}", folder.string(), reason));
+  throw Error(fmt::format("'{}' holds no run of 'tandem diff --out': {}", folder.string(), reason));
 }
 
 /// What settings may be called differently without being different.
@@ -40,17 +40,16 @@ BaselineSide compare_side(const pathtracer::Image& before, const Json& milliseco
 StoredRun read_stored_run(const std::filesystem::path& folder) {
   StoredRun run{.folder = folder, .a = {}, .b = {}, .report = {}};
   try {
-    run.report = Json::parse(pathtracer::read_text(folder / stored_report));
+    run.report = Json::parse(read_text(folder / stored_report));
     // Whatever is read later.
     for (const char* key : {"settings", "device_a", "device_b"})
-      if (!run.report.at(key).is_object())
-        throw pathtracer::Error(fmt::format("'{}' of {} is no object", key, stored_report));
+      if (!run.report.at(key).is_object()) throw Error(fmt::format("'{}' of {} is no object", key, stored_report));
     for (const char* key : {"ms_a", "ms_b"}) run.report.at(key).get<double>();
     run.a = pathtracer::read_image(folder / "a.exr");
     run.b = pathtracer::read_image(folder / "b.exr");
   } catch (const Json::exception& error) {
     refuse(folder, fmt::format("{}: {}", stored_report, error.what()));
-  } catch (const pathtracer::Error& error) {
+  } catch (const Error& error) {
     refuse(folder, error.what());
   }
   return run;
@@ -62,7 +61,7 @@ void check_same_job(const StoredRun& run, const JobSummary& job, const pathtrace
   const Json now = without_names(Json::parse(settings_json(job, camera, background).dump()));
   const Json before = without_names(run.report.at("settings"));
   const auto fail = [&](const std::string& reason) {
-    throw pathtracer::Error(fmt::format("the run in '{}' cannot be the baseline: {}", run.folder.string(), reason));
+    throw Error(fmt::format("the run in '{}' cannot be the baseline: {}", run.folder.string(), reason));
   };
   if (run.report.contains("statistics")) fail("its images are of tier statistical, each of many seeds");
   if (before.value("scene_hash", Json()) != now.at("scene_hash"))

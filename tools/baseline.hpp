@@ -7,11 +7,11 @@
 
 #include <glm/vec3.hpp>
 
-#include "compare/metrics.hpp"
-#include "compare/verdict.hpp"
-#include "pathtracer/camera.hpp"
-#include "pathtracer/image.hpp"
-#include "tools/job_report.hpp"
+#include "compare/metrics/metrics.hpp"
+#include "compare/verdict/verdict.hpp"
+#include "pathtracer/image/image.hpp"
+#include "pathtracer/scene/camera.hpp"
+#include "tools/report/job_report.hpp"
 
 /// A comparison of today with one that `tandem diff --out` stored.
 namespace tandem::tools {
@@ -26,10 +26,10 @@ struct StoredRun {
   nlohmann::json report;   ///< of diff.json
 };
 
-/// Throws pathtracer::Error, naming the file, when the folder holds no whole run.
+/// Throws Error, naming the file, when the folder holds no whole run.
 StoredRun read_stored_run(const std::filesystem::path& folder);
 
-/// Throws pathtracer::Error unless the run shows the same content of a scene under the same settings, in a tier that
+/// Throws Error unless the run shows the same content of a scene under the same settings, in a tier that
 /// compares the same samples.
 /// @param camera,background those in use
 void check_same_job(const StoredRun& run, const JobSummary& job, const pathtracer::Camera& camera,

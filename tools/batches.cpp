@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "tools/option_values.hpp"
+#include "tools/options/option_values.hpp"
 
 namespace tandem::tools {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "pathtracer/renderer.hpp"
+#include "pathtracer/render/renderer.hpp"
 #include "tools/rendering.hpp"
-#include "tools/statistics_report.hpp"
+#include "tools/report/statistics_report.hpp"
 
 /// Tier statistical: a scene rendered in batches under different seeds, so that the noise is known.
 namespace tandem::tools {

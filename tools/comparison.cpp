@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "pathtracer/error.hpp"
-#include "tools/interruption.hpp"
-#include "tools/option_values.hpp"
-#include "tools/progress_bar.hpp"
+#include "base/error.hpp"
+#include "tools/options/option_values.hpp"
+#include "tools/output/interruption.hpp"
+#include "tools/output/progress_bar.hpp"
 
 namespace tandem::tools {
 
@@ -36,7 +36,7 @@ compare::Thresholds thresholds_for(const ComparisonOptions& options, const Rende
   compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
   apply(options.thresholds, thresholds);
   if (thresholds.tier == compare::Tier::statistical && options.classify)
-    throw pathtracer::Error("--classify means nothing in tier statistical, where every path of a and b is another");
+    throw Error("--classify means nothing in tier statistical, where every path of a and b is another");
   return thresholds;
 }
 

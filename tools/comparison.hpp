@@ -5,18 +5,18 @@
 #include <optional>
 #include <string>
 
-#include "compare/classification.hpp"
-#include "compare/detailed_metrics.hpp"
-#include "compare/thresholds.hpp"
-#include "pathtracer/renderer.hpp"
-#include "pathtracer/trace_form.hpp"
+#include "compare/cause/classification.hpp"
+#include "compare/metrics/detailed_metrics.hpp"
+#include "compare/verdict/thresholds.hpp"
+#include "pathtracer/render/renderer.hpp"
+#include "pathtracer/render/trace_form.hpp"
 #include "rhi/device.hpp"
 #include "tools/batches.hpp"
-#include "tools/diff_report.hpp"
-#include "tools/job_report.hpp"
-#include "tools/render_options.hpp"
+#include "tools/options/render_options.hpp"
+#include "tools/options/threshold_options.hpp"
 #include "tools/rendering.hpp"
-#include "tools/threshold_options.hpp"
+#include "tools/report/diff_report.hpp"
+#include "tools/report/job_report.hpp"
 
 /// One scene rendered on two devices and compared: what diff, gallery, suite and matrix share. A part of the comparison
 /// beyond pictures, metrics and verdict has its options in ComparisonOptions, is declared in add_comparison_options,
@@ -44,7 +44,7 @@ struct ComparisonOptions {
 void add_comparison_options(CLI::App& command, ComparisonOptions& options);
 
 /// What a verdict holds the devices to: the options, the scene's file, and the usual thresholds, in this order. Throws
-/// pathtracer::Error.
+/// Error.
 compare::Thresholds thresholds_for(const ComparisonOptions& options, const RenderOptions& render_options);
 
 struct ComparedDevices {
@@ -69,7 +69,7 @@ struct Comparison {
 };
 
 /// Reads the scene's thresholds and uploads the scene to every device, so that what one of them refuses does not cost a
-/// rendering on another. Throws pathtracer::Error and rhi::Error.
+/// rendering on another. Throws Error and rhi::Error.
 Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
                    ComparedDevices devices);
 

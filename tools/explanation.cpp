@@ -7,9 +7,9 @@
 #include <bit>
 #include <utility>
 
-#include "pathtracer/error.hpp"
-#include "pathtracer/renderer.hpp"
-#include "tools/messages.hpp"
+#include "base/error.hpp"
+#include "pathtracer/render/renderer.hpp"
+#include "tools/output/messages.hpp"
 #include "tools/rendering.hpp"
 
 namespace tandem::tools {
@@ -36,12 +36,12 @@ bool has_mismatch(const ExplainedSample& sample) {
 
 void check(const ExplanationOptions& options, const RenderJob& job) {
   if (options.pixel.x >= job.settings.width || options.pixel.y >= job.settings.height) {
-    throw pathtracer::Error(fmt::format("--pixel {},{} is outside the picture, which has {}x{} pixels", options.pixel.x,
-                                        options.pixel.y, job.settings.width, job.settings.height));
+    throw Error(fmt::format("--pixel {},{} is outside the picture, which has {}x{} pixels", options.pixel.x,
+                            options.pixel.y, job.settings.width, job.settings.height));
   }
   if (options.sample && *options.sample >= job.samples) {
-    throw pathtracer::Error(fmt::format("--sample {} is not there: the pixel has samples 0 to {} (--spp {})",
-                                        *options.sample, job.samples - 1, job.samples));
+    throw Error(fmt::format("--sample {} is not there: the pixel has samples 0 to {} (--spp {})", *options.sample,
+                            job.samples - 1, job.samples));
   }
 }
 

@@ -7,15 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "compare/classification.hpp"
-#include "compare/explanation.hpp"
+#include "compare/cause/classification.hpp"
+#include "compare/path/alignment.hpp"
+#include "compare/path/scene_names.hpp"
 #include "compare/probe/probing.hpp"
-#include "compare/scene_names.hpp"
-#include "pathtracer/path_event.hpp"
-#include "pathtracer/trace_form.hpp"
+#include "pathtracer/render/path_event.hpp"
+#include "pathtracer/render/trace_form.hpp"
 #include "rhi/device.hpp"
-#include "tools/job_report.hpp"
-#include "tools/render_options.hpp"
+#include "tools/options/render_options.hpp"
+#include "tools/report/job_report.hpp"
 
 /// What two devices do for one pixel.
 namespace tandem::tools {
@@ -57,7 +57,7 @@ struct Explanation {
   std::uint64_t mismatches() const;
 };
 
-/// Records the pixel's paths; renders no picture. Throws pathtracer::Error for a pixel outside the picture and a sample
+/// Records the pixel's paths; renders no picture. Throws Error for a pixel outside the picture and a sample
 /// that the pixel does not have, rhi::Error for a device that is not there.
 Explanation explain(const ExplanationOptions& options, const RenderOptions& render_options);
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tools/command.hpp"
-#include "tools/interruption.hpp"
+#include "tools/output/interruption.hpp"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <glm/vec3.hpp>
 
 #include "devices/devices.hpp"
-#include "pathtracer/scene_loader.hpp"
-#include "tools/interruption.hpp"
-#include "tools/messages.hpp"
-#include "tools/progress_bar.hpp"
+#include "pathtracer/load/scene_loader.hpp"
+#include "tools/output/interruption.hpp"
+#include "tools/output/messages.hpp"
+#include "tools/output/progress_bar.hpp"
 
 namespace tandem::tools {
 namespace {

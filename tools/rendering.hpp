@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "pathtracer/renderer.hpp"
-#include "pathtracer/scene.hpp"
+#include "pathtracer/render/renderer.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
-#include "tools/render_options.hpp"
+#include "tools/options/render_options.hpp"
 
 /// From the options of a command to pictures: what render, diff and bench share.
 namespace tandem::tools {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/acceleration_structure.hpp"
 
 namespace tandem::compare {

@@ -8,8 +8,8 @@
 #include "compare/probe/answer.hpp"
 #include "compare/probe/structures.hpp"
 #include "compare/probe/trial.hpp"
-#include "pathtracer/scene.hpp"
-#include "pathtracer/trace_form.hpp"
+#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::compare {

@@ -2,10 +2,10 @@
 
 #include <bit>
 
-#include "compare/probe/judge.hpp"
+#include "compare/image/ulp.hpp"
+#include "compare/probe/answer_check.hpp"
 #include "compare/probe/prober.hpp"
 #include "compare/probe/reference.hpp"
-#include "compare/ulp.hpp"
 
 namespace tandem::compare {
 namespace {

@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "compare/arbitration.hpp"
-#include "compare/difference_class.hpp"
+#include "compare/cause/arbitration.hpp"
+#include "compare/cause/difference_class.hpp"
 #include "compare/probe/field.hpp"
 #include "compare/probe/ray.hpp"
 #include "compare/probe/trial.hpp"
-#include "pathtracer/scene.hpp"
-#include "pathtracer/trace_form.hpp"
-#include "pathtracer/traced_ray.hpp"
+#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/traced_ray.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
 /// The scene's own geometry, asked in ways that the path tracer does not use, on two devices.

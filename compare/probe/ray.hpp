@@ -6,9 +6,9 @@
 #include "compare/probe/answer.hpp"
 #include "compare/probe/reference.hpp"
 #include "compare/probe/trial.hpp"
-#include "pathtracer/path_event.hpp"
-#include "pathtracer/renderer.hpp"
-#include "pathtracer/scene.hpp"
+#include "pathtracer/render/path_event.hpp"
+#include "pathtracer/render/renderer.hpp"
+#include "pathtracer/scene/scene.hpp"
 
 namespace tandem::compare {
 

@@ -7,11 +7,11 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "compare/geometry/bounding_volumes.hpp"
+#include "compare/geometry/intersection.hpp"
 #include "compare/probe/answer.hpp"
-#include "compare/probe/bounding_volumes.hpp"
-#include "compare/probe/encounter.hpp"
 #include "compare/probe/trial.hpp"
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 
 namespace tandem::compare {
 

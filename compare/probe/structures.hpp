@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compare/probe/arrangement.hpp"
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::compare {

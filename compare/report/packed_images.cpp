@@ -3,7 +3,7 @@
 #include <bit>
 #include <vector>
 
-#include "compare/image_pair.hpp"
+#include "compare/image/image_pair.hpp"
 #include "compare/report/packing.hpp"
 
 namespace tandem::compare {

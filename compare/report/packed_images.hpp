@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "pathtracer/image.hpp"
+#include "pathtracer/image/image.hpp"
 
 namespace tandem::compare {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "compare/image_pair.hpp"
+#include "compare/image/image_pair.hpp"
 #include "compare/report/packed_images.hpp"
 #include "compare/report/packing.hpp"
 #include "compare/report/page_sources.hpp"

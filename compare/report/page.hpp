@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "compare/classification.hpp"
-#include "compare/flip/flip.hpp"
+#include "compare/cause/classification.hpp"
+#include "compare/image/flip/flip.hpp"
 #include "compare/report/ranking.hpp"
-#include "pathtracer/image.hpp"
-#include "pathtracer/path_event.hpp"
+#include "pathtracer/image/image.hpp"
+#include "pathtracer/render/path_event.hpp"
 
 /// A page of HTML about the difference of two devices, for people who open it in a browser.
 namespace tandem::compare {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "compare/image_pair.hpp"
+#include "compare/image/image_pair.hpp"
 
 namespace tandem::compare {
 namespace {

@@ -7,8 +7,8 @@
 
 #include <glm/vec2.hpp>
 
-#include "compare/classification.hpp"
-#include "pathtracer/image.hpp"
+#include "compare/cause/classification.hpp"
+#include "pathtracer/image/image.hpp"
 
 namespace tandem::compare {
 

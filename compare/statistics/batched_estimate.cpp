@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "rhi/error.hpp"
+#include "base/error.hpp"
 
 namespace tandem::compare {
+
+using namespace statistics;
 namespace {
 
 constexpr std::size_t index(Channel channel) { return static_cast<std::size_t>(channel); }
@@ -32,7 +34,7 @@ BatchedEstimate::BatchedEstimate(std::uint32_t width, std::uint32_t height, std:
 
 void BatchedEstimate::add(const pathtracer::Image& batch) {
   if (batch.width != width_ || batch.height != height_ || batch.pixels.size() != picture_.size())
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, "", "batches of one estimate must have one size");
+    throw Error("batches of one estimate must have one size");
   Sums all;
   for (std::size_t i = 0; i < tiles_.size(); ++i) {
     const Tile& tile = tiles_[i];

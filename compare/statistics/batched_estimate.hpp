@@ -8,8 +8,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "compare/statistics/means.hpp"
-#include "pathtracer/image.hpp"
+#include "base/statistics/means.hpp"
+#include "pathtracer/image/image.hpp"
 
 namespace tandem::compare {
 
@@ -33,16 +33,16 @@ class BatchedEstimate {
   BatchedEstimate(std::uint32_t width, std::uint32_t height, std::uint32_t tile);
 
   /// Pixels with a NaN or an infinity are left out of the means over tiles, not out of the picture. Throws
-  /// rhi::Error(invalid_argument) for a batch of another size.
+  /// Error for a batch of another size.
   void add(const pathtracer::Image& batch);
 
   std::size_t batches() const noexcept { return batches_; }
   std::span<const Tile> tiles() const noexcept { return tiles_; }
 
   /// Of the batches, over the tile of that index. At least two batches.
-  Mean tile_mean(std::size_t tile, Channel channel) const;
+  statistics::Mean tile_mean(std::size_t tile, Channel channel) const;
   /// Likewise over the whole picture.
-  Mean picture_mean(Channel channel) const;
+  statistics::Mean picture_mean(Channel channel) const;
   /// The mean of the batches; black before the first.
   pathtracer::Image image() const;
 
@@ -53,7 +53,7 @@ class BatchedEstimate {
     double pixels = 0;
     double mean(Channel channel) const;
   };
-  Mean mean(std::size_t area, Channel channel) const;
+  statistics::Mean mean(std::size_t area, Channel channel) const;
 
   std::uint32_t width_, height_;
   std::size_t batches_ = 0;

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <vector>
 
-#include "compare/statistics/distributions.hpp"
-#include "compare/statistics/power.hpp"
-#include "rhi/error.hpp"
+#include "base/error.hpp"
+#include "base/statistics/distributions.hpp"
+#include "base/statistics/power.hpp"
 
 namespace tandem::compare {
+
+using namespace statistics;
 namespace {
 
 /// Of tests for tiles and tests for the picture: two families, each corrected for itself first.
@@ -23,7 +25,7 @@ void check_alike(const BatchedEstimate& a, const BatchedEstimate& b) {
   const auto same = [](const Tile& s, const Tile& t) { return s.width == t.width && s.height == t.height; };
   if (a.tiles().size() != b.tiles().size() || a.tiles().empty() || !same(whole(a), whole(b)) ||
       !same(a.tiles().front(), b.tiles().front()))
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, "", "estimates of different sizes or tiles cannot be compared");
+    throw Error("estimates of different sizes or tiles cannot be compared");
 }
 
 double pixels(const Tile& tile) { return static_cast<double>(tile.width) * tile.height; }
@@ -31,7 +33,7 @@ double pixels(const Tile& tile) { return static_cast<double>(tile.width) * tile.
 /// How much darker chance may make a tile is not seen in its own noise where the rare events that light it have not
 /// happened. So the error of each tile is enlarged by that of so many further events of the size usual in the picture.
 /// With 20, light paths that find the lamp by chance failed no more often than the p-value says; in ordinary pictures,
-/// whose tiles gather thousands of events, it changes nothing (docs/statistics.md).
+/// whose tiles gather thousands of events, it changes nothing (docs/guide/statistics.md).
 constexpr double further_events = 20;
 
 /// How much one event adds to the sum over the pixels of a tile: a sum of N events of one size, N with a Poisson

@@ -11,7 +11,7 @@ namespace tandem::compare {
 struct ComparedMean {
   Tile tile;
   Channel channel = Channel::luminance;
-  Mean a, b;
+  statistics::Mean a, b;
   double p_value = 1;  ///< of this mean alone, by welch_p_value
   /// (b - a) / a; 0 where a is 0.
   double relative_difference() const;
@@ -38,9 +38,9 @@ struct BiasTest {
 /// JASA 64, 1969, as differences of batches are then symmetric). Nothing is trimmed, because trimmed means of different
 /// samplers would have different limits. Estimates with different distributions have the same p-values only where both
 /// are seen: the errors of tiles allow for twenty events that have not happened, each of the size usual in the picture.
-/// docs/statistics.md has the measurements.
+/// docs/guide/statistics.md has the measurements.
 ///
-/// At least two batches each. Throws rhi::Error(invalid_argument) for estimates of different sizes or tiles.
+/// At least two batches each. Throws Error for estimates of different sizes or tiles.
 BiasTest test_bias(const BatchedEstimate& a, const BatchedEstimate& b);
 
 /// The smallest biases that test_bias would have found.

@@ -31,7 +31,7 @@ def description():
             else:
                 sphere["material"] = f"metal_{choice}" if kind < 0.9 else "glass"
             spheres.append(sphere)
-    return {"$schema": "../docs/scene.schema.json",
+    return {"$schema": "../docs/schema/scene.schema.json",
             "title": "Spheres, some of which move, and a ball of mist, after Shirley, \"Ray Tracing in One Weekend\" (2020)",
             "spheres": spheres,
             "quads": [{"corner": [-40, 0, 40], "u": [80, 0, 0], "v": [0, 0, -80], "material": "ground"}],

@@ -1,6 +1,6 @@
 // The events of a path, for whoever wants to know where two devices part. With TANDEM_EVENTS the integrator writes them
 // down; without, TANDEM_RECORD leaves nothing of what it encloses, and the shader is the same to the last byte.
-// pathtracer/path_event.hpp says the same on the host, compare/event_fields.cpp what the words of each event mean.
+// pathtracer/render/path_event.hpp says the same on the host, compare/path/event_fields.cpp what the words of each event mean.
 
 #ifndef TANDEM_INTEGRATOR_EVENTS
 #define TANDEM_INTEGRATOR_EVENTS

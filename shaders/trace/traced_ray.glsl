@@ -1,4 +1,4 @@
-// A ray of the path tracer and its answer: pathtracer/traced_ray.hpp says the same on the host.
+// A ray of the path tracer and its answer: pathtracer/render/traced_ray.hpp says the same on the host.
 
 #ifndef TANDEM_TRACE_TRACED_RAY
 #define TANDEM_TRACE_TRACED_RAY

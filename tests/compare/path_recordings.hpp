@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "pathtracer/path_event.hpp"
+#include "pathtracer/render/path_event.hpp"
 
 /// Events as a device might have recorded them.
 namespace tandem::compare {

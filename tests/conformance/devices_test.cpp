@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "conformance/report.hpp"
+#include "conformance/kit/report.hpp"
 #include "tests/support/device_test.hpp"
 
 namespace tandem::conformance {
@@ -39,12 +39,12 @@ TEST_CASE("every device passes the kit, but for the known bugs of its driver") {
   }
 }
 
-TEST_CASE("docs/backend-status.md has the kit's cases and the known driver bugs") {
+TEST_CASE("docs/results/backend-status.md has the kit's cases and the known driver bugs") {
   std::ifstream file(TANDEM_SOURCE_DIRECTORY "/docs/backend-status.md");
   std::ostringstream status;
   status << file.rdbuf();
   const bool up_to_date = status.str().ends_with(catalogue(all_cases(), known_driver_bugs()));
-  CHECK_MESSAGE(up_to_date, "make it again: tandem conformance --markdown docs/backend-status.md");
+  CHECK_MESSAGE(up_to_date, "make it again: tandem conformance --markdown docs/results/backend-status.md");
 }
 
 }  // namespace

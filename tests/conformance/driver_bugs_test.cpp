@@ -1,4 +1,4 @@
-#include "conformance/driver_bugs.hpp"
+#include "conformance/kit/driver_bugs.hpp"
 
 #include <doctest/doctest.h>
 

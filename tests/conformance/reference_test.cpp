@@ -1,4 +1,4 @@
-#include "conformance/reference.hpp"
+#include "conformance/kit/reference.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "conformance/report.hpp"
+#include "conformance/kit/report.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "conformance/run.hpp"
+#include "conformance/kit/run.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <regex>
 #include <set>
 
-#include "conformance/check.hpp"
+#include "conformance/kit/check.hpp"
 #include "tests/support/device_test.hpp"
 
 namespace tandem::conformance {

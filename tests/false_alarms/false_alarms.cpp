@@ -14,13 +14,13 @@
 #include <string>
 #include <vector>
 
-#include "compare/classification.hpp"
-#include "compare/metrics.hpp"
-#include "compare/thresholds.hpp"
-#include "compare/verdict.hpp"
+#include "compare/cause/classification.hpp"
+#include "compare/metrics/metrics.hpp"
+#include "compare/verdict/thresholds.hpp"
+#include "compare/verdict/verdict.hpp"
 #include "devices/devices.hpp"
-#include "pathtracer/renderer.hpp"
-#include "pathtracer/scene_loader.hpp"
+#include "pathtracer/load/scene_loader.hpp"
+#include "pathtracer/render/renderer.hpp"
 
 namespace {
 

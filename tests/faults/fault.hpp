@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "pathtracer/trace_form.hpp"
+#include "pathtracer/render/trace_form.hpp"
 #include "tests/faults/device_edits.hpp"
 #include "tests/faults/shader_edits.hpp"
 

@@ -9,11 +9,11 @@
 #include <string_view>
 #include <vector>
 
-#include "compare/event_fields.hpp"
-#include "compare/explanation.hpp"
+#include "compare/path/alignment.hpp"
+#include "compare/path/event_fields.hpp"
 #include "compare/probe/probing.hpp"
-#include "pathtracer/renderer.hpp"
-#include "pathtracer/scene_loader.hpp"
+#include "pathtracer/load/scene_loader.hpp"
+#include "pathtracer/render/renderer.hpp"
 #include "tests/faults/faulty_device.hpp"
 
 namespace tandem::test {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "compare/classification.hpp"
-#include "compare/difference_class.hpp"
+#include "compare/cause/classification.hpp"
+#include "compare/cause/difference_class.hpp"
 #include "rhi/device.hpp"
 #include "tests/faults/fault.hpp"
 

@@ -21,7 +21,7 @@ std::string summary(std::span<const FaultRow> rows);
 /// An aligned table, with a line break at its end.
 std::string text_table(std::span<const FaultRow> rows);
 
-/// docs/faults.md.
+/// docs/results/faults.md.
 std::string markdown_page(std::span<const FaultRow> rows);
 
 nlohmann::ordered_json to_json(std::span<const FaultRow> rows);

@@ -9,7 +9,7 @@
 
 #include <spirv-tools/libspirv.hpp>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;

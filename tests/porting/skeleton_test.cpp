@@ -1,11 +1,11 @@
-#include "docs/porting/skeleton.hpp"
+#include "docs/internals/porting/skeleton.hpp"
 
 #include <doctest/doctest.h>
 
 #include <string>
 
-#include "conformance/report.hpp"
-#include "conformance/run.hpp"
+#include "conformance/kit/report.hpp"
+#include "conformance/kit/run.hpp"
 #include "tests/rhi/dispatch.hpp"
 
 namespace tandem {

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <utility>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "tests/rhi/dispatch.hpp"
 
 using namespace tandem;

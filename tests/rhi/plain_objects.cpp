@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 
 namespace tandem::test {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "glsl/compile.hpp"
 #include "rhi/error.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "rhi/pipeline.hpp"
 #include "tests/rhi/plain_objects.hpp"
 

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "glsl/compile.hpp"
 #include "rhi/error.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "rhi_cpu/device.hpp"
 #include "rhi_cpu/kernel/trace.hpp"
 #include "tests/support/device_test.hpp"

@@ -11,8 +11,8 @@
 #include <set>
 #include <thread>
 
-#include "glsl/compile.hpp"
 #include "rhi/error.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "tests/rhi_cpu/scratch.hpp"
 #include "tests/support/device_test.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "rhi_cpu/device.hpp"
 
 namespace tandem::test {

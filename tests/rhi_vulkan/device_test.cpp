@@ -6,7 +6,7 @@
 #include <cstring>
 #include <mutex>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "rhi_vulkan/vulkan.hpp"
 #include "tests/rhi/dispatch.hpp"
 

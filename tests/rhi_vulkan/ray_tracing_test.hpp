@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "tests/rhi/dispatch.hpp"
 #include "tests/rhi/ray_probe.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "tests/rhi/dispatch.hpp"
 
 using namespace tandem;

@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "pathtracer/scene_buffers.hpp"
+#include "pathtracer/scene/buffers.hpp"
 #include "tests/shaders/function_kernel.hpp"
 
 /// Materials of every model, and kernels that call a BSDF for them.

@@ -96,7 +96,7 @@ TANDEM_DEVICE_TEST("No BSDF gives back more light than arrives, and white ones l
   // Compensated models are off by the errors of their fits, in both directions: 0.005 of the loss, 0.008 of Schlick's
   // part, 0.003 of the mean.
   const double fit_error = 0.01;
-  // What docs/shaders.md says of the others: at normal incidence, and the least of all angles.
+  // What docs/internals/shaders.md says of the others: at normal incidence, and the least of all angles.
   const std::map<std::string, std::pair<double, double>> documented = {
       {"glass 0.2", {1.000, 0.912}},        {"glass 0.4", {0.997, 0.926}},        {"glass 0.6", {0.983, 0.885}},
       {"glass 0.8", {0.950, 0.800}},        {"glass 1.0", {0.893, 0.704}},        {"glass inside 0.2", {0.998, 0.884}},

@@ -9,8 +9,8 @@
 
 #include "tests/shaders/bsdf_materials.hpp"
 #include "tests/shaders/random_source.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 

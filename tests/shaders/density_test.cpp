@@ -10,8 +10,8 @@
 #include <doctest/doctest.h>
 
 #include "tests/shaders/function_kernel.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 

@@ -9,13 +9,13 @@
 
 #include <glm/geometric.hpp>
 
-#include "compare/statistics/means.hpp"
-#include "pathtracer/environment.hpp"
+#include "base/statistics/means.hpp"
+#include "pathtracer/scene/environment.hpp"
 #include "tests/shaders/light_samples.hpp"
 #include "tests/shaders/random_source.hpp"
 #include "tests/shaders/scene_kernel.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
@@ -221,8 +221,8 @@ TANDEM_DEVICE_TEST("Irradiance from an environment is the integral of its radian
       for (std::size_t i = 0; i < seen.size(); ++i)
         truth += seen[i].radiance * std::max(glm::dot(directions[i], normal), 0.0) *
                  std::sqrt(1 - directions[i].y * directions[i].y) * (pi / height / side) * (2 * pi / width / side);
-      const compare::Mean mean =
-          compare::mean_of(irradiances(light_samples(device, scene, glm::vec3(0), count), normal));
+      const statistics::Mean mean =
+          statistics::mean_of(irradiances(light_samples(device, scene, glm::vec3(0), count), normal));
       CAPTURE(truth);
       CAPTURE(mean.value);
       CHECK(mean.standard_error < 5e-3 * truth);
@@ -243,7 +243,7 @@ TANDEM_DEVICE_TEST("A constant environment gives pi L") {
     counts[bins.bin(glm::dvec3(sample.direction))] += 1;
   }
   CHECK(test::chi_square_uniform(counts).p_value > least_p_value);
-  const compare::Mean mean = compare::mean_of(irradiances(samples, glm::normalize(glm::dvec3(3, 1, -2))));
+  const statistics::Mean mean = statistics::mean_of(irradiances(samples, glm::normalize(glm::dvec3(3, 1, -2))));
   CHECK(std::abs(mean.value - 0.75 * pi) < most_standard_errors * mean.standard_error);
 }
 

@@ -9,11 +9,11 @@
 
 #include <doctest/doctest.h>
 
-#include "compare/statistics/means.hpp"
-#include "study/convergence.hpp"
+#include "base/statistics/means.hpp"
+#include "compare/study/convergence.hpp"
 #include "tests/shaders/function_kernel.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 
@@ -142,13 +142,13 @@ TANDEM_DEVICE_TEST("Estimators of the lecture are unbiased and have the variance
   for (const Estimator& estimator : {mean_method, root, sine}) {
     constexpr std::uint32_t count = 1000, repetitions = 1000;  // as in the lecture, of its ten thousand estimates
     const std::vector<double> values = estimates(device, estimator, independent, count, repetitions);
-    const compare::Mean mean = compare::mean_of(values);
+    const statistics::Mean mean = statistics::mean_of(values);
     const double second_moment =
         integral([&](double x) { return integrand(x) * integrand(x) / estimator.exact_density(x); });
     const double theory = (second_moment - published * published) / count;
     const double variance = mean.standard_error * mean.standard_error * repetitions;
     INFO(estimator.name, ": ", mean.value, " +- ", mean.standard_error);
-    CHECK(std::abs(compare::z_score(mean, published)) < 4);
+    CHECK(std::abs(statistics::z_score(mean, published)) < 4);
     // The standard deviation of a sample variance is sqrt(2 / 999) of it.
     CHECK(variance == doctest::Approx(theory).epsilon(4 * 0.045));
     variances.push_back(variance);

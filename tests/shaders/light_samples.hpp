@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::test {

@@ -9,11 +9,11 @@
 
 #include <glm/geometric.hpp>
 
-#include "compare/statistics/means.hpp"
-#include "pathtracer/lights.hpp"
+#include "base/statistics/means.hpp"
+#include "pathtracer/scene/lights.hpp"
 #include "tests/shaders/light_samples.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
@@ -82,7 +82,7 @@ double polygon_irradiance(std::span<const glm::vec3> vertices, const glm::dvec3&
 }
 
 void check_mean(const std::vector<double>& values, double truth) {
-  const compare::Mean mean = compare::mean_of(values);
+  const statistics::Mean mean = statistics::mean_of(values);
   CAPTURE(truth);
   CAPTURE(mean.value);
   CAPTURE(mean.standard_error);

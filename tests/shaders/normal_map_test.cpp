@@ -9,7 +9,7 @@
 
 #include <glm/glm.hpp>
 
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "tests/shaders/random_source.hpp"
 #include "tests/shaders/scene_kernel.hpp"
 #include "tests/support/device_test.hpp"

@@ -7,13 +7,13 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "compare/statistics/means.hpp"
-#include "pathtracer/features.hpp"
+#include "base/statistics/means.hpp"
+#include "pathtracer/render/features.hpp"
 #include "tests/shaders/function_kernel.hpp"
 #include "tests/shaders/random_source.hpp"
 #include "tests/shaders/test_scene.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 using test::RenderConstants;
@@ -38,11 +38,11 @@ RenderConstants narrow(const glm::vec3& position, const test::TestScene& scene) 
   return constants;
 }
 
-compare::Mean mean_of_pixels(const test::Rendering& rendering, std::size_t channel, std::uint32_t sample_count) {
+statistics::Mean mean_of_pixels(const test::Rendering& rendering, std::size_t channel, std::uint32_t sample_count) {
   std::vector<double> samples;
   for (std::size_t i = channel; i < rendering.radiance_sum.size(); i += 3)
     samples.push_back(static_cast<double>(rendering.radiance_sum[i]) / sample_count);
-  return compare::mean_of(samples);
+  return statistics::mean_of(samples);
 }
 
 }  // namespace
@@ -131,9 +131,9 @@ TANDEM_DEVICE_TEST("A medium that only scatters is invisible under a uniform sky
     scene.media[0].anisotropy = anisotropy;
     const test::Rendering rendering = test::path_trace(device, pipeline, test::upload(device, scene), {constants});
     for (std::size_t c = 0; c < 3; ++c) {
-      const compare::Mean mean = mean_of_pixels(rendering, c, 16);
+      const statistics::Mean mean = mean_of_pixels(rendering, c, 16);
       // Nine independent tests at five deviations: one seed in 200,000 fails.
-      CHECK(std::abs(compare::z_score(mean, 1.0)) < 5);
+      CHECK(std::abs(statistics::z_score(mean, 1.0)) < 5);
       CHECK(mean.standard_error < 0.05);
     }
   }
@@ -158,7 +158,7 @@ TANDEM_DEVICE_TEST("Light scattered once is the integral over the ray, by every 
   for (const std::uint32_t light_sampling : {1u, 0u}) {
     constants.light_sampling = light_sampling;
     ++constants.seed;
-    const compare::Mean mean = mean_of_pixels(test::path_trace(device, pipeline, device_scene, {constants}), 0, 64);
+    const statistics::Mean mean = mean_of_pixels(test::path_trace(device, pipeline, device_scene, {constants}), 0, 64);
     CAPTURE(mean.value);
     CHECK(std::abs(mean.value - truth) < 5 * mean.standard_error + 0.02 * truth);
     CHECK(mean.standard_error < 0.05 * truth);
@@ -188,7 +188,7 @@ TANDEM_DEVICE_TEST("All techniques light a thick medium with a lamp inside a box
       other.light_sampling = 0;
     const test::Rendering rendering = test::path_trace(device, pipeline, device_scene, {other});
     for (std::size_t c = 0; c < 3; ++c)
-      CHECK(compare::welch_p_value(mean_of_pixels(usual, c, 16), mean_of_pixels(rendering, c, 16)) > 1e-5);
+      CHECK(statistics::welch_p_value(mean_of_pixels(usual, c, 16), mean_of_pixels(rendering, c, 16)) > 1e-5);
   }
 }
 

@@ -8,8 +8,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "compare/statistics/means.hpp"
-#include "pathtracer/features.hpp"
+#include "base/statistics/means.hpp"
+#include "pathtracer/render/features.hpp"
 #include "tests/shaders/test_scene.hpp"
 #include "tests/support/device_test.hpp"
 
@@ -30,11 +30,11 @@ constexpr double unlikely = 1e-5;
 constexpr std::uint32_t sample_count = 16;
 
 /// One colour of every pixel.
-compare::Mean mean_of_pixels(const test::Rendering& rendering, std::size_t channel) {
+statistics::Mean mean_of_pixels(const test::Rendering& rendering, std::size_t channel) {
   std::vector<double> samples;
   for (std::size_t i = channel; i < rendering.radiance_sum.size(); i += 3)
     samples.push_back(static_cast<double>(rendering.radiance_sum[i]) / sample_count);
-  return compare::mean_of(samples);
+  return statistics::mean_of(samples);
 }
 
 struct Technique {
@@ -77,11 +77,11 @@ std::vector<double> compare_techniques(rhi::Device& device, std::uint32_t featur
     technique.set(other);
     const test::Rendering rendering = test::path_trace(device, pipeline, device_scene, {other});
     for (const std::size_t channel : {0, 2}) {
-      const compare::Mean a = mean_of_pixels(usual, channel), b = mean_of_pixels(rendering, channel);
+      const statistics::Mean a = mean_of_pixels(usual, channel), b = mean_of_pixels(rendering, channel);
       CAPTURE(a.value);
       CAPTURE(b.value);
       CHECK(a.value > 0.0);
-      CHECK(compare::welch_p_value(a, b) > unlikely);
+      CHECK(statistics::welch_p_value(a, b) > unlikely);
     }
     errors.push_back(mean_of_pixels(rendering, 0).standard_error);
   }
@@ -155,6 +155,6 @@ TANDEM_DEVICE_TEST("All techniques give a diffuse plane under a uniform sky the 
   const test::Rendering rendering =
       test::path_trace(device, test::path_trace_pipeline(device, feature::lights | feature::options),
                        test::upload(device, scene), {constants});
-  CHECK(std::abs(compare::z_score(mean_of_pixels(rendering, 0), 0.5)) < 5);
-  CHECK(std::abs(compare::z_score(mean_of_pixels(rendering, 2), 0.75)) < 5);
+  CHECK(std::abs(statistics::z_score(mean_of_pixels(rendering, 0), 0.5)) < 5);
+  CHECK(std::abs(statistics::z_score(mean_of_pixels(rendering, 2), 0.75)) < 5);
 }

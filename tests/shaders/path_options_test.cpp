@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "pathtracer/features.hpp"
+#include "pathtracer/render/features.hpp"
 #include "tests/shaders/test_scene.hpp"
 #include "tests/support/device_test.hpp"
 

@@ -12,7 +12,7 @@
 #include <spirv/unified1/GLSL.std.450.h>
 #include <spirv/unified1/spirv.hpp>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 
 using namespace tandem;
 

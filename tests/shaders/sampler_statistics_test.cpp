@@ -6,11 +6,11 @@
 
 #include <doctest/doctest.h>
 
-#include "compare/statistics/means.hpp"
-#include "study/convergence.hpp"
+#include "base/statistics/means.hpp"
+#include "compare/study/convergence.hpp"
 #include "tests/shaders/sampler_draws.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 using test::Bits;
@@ -115,7 +115,7 @@ TANDEM_DEVICE_TEST("Dimensions of a path are uncorrelated within the samples of 
           // Of random orders the expectation is 1 and the variance of a square is 2, so the standard error of the mean
           // is sqrt(2 / 256) = 0.09. Orders that keep blocks of powers of two together, as those of Sobol do, decide
           // the leading bit of half of the samples only: up to 2. The same sequence twice has some 30.
-          const compare::Mean mean = compare::mean_of(squares);
+          const statistics::Mean mean = statistics::mean_of(squares);
           INFO(sampler.name, ", dimensions number ", a, " and ", b, ", number ", i);
           CHECK(mean.value < (sampler.call.starts_with("sobol") ? 2.6 : 1.4));
         }

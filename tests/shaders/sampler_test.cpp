@@ -9,8 +9,8 @@
 
 #include "tests/shaders/function_kernel.hpp"
 #include "tests/shaders/sampler_draws.hpp"
-#include "tests/statistics/chi_square.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/statistics/chi_square.hpp"
 
 using namespace tandem;
 using test::Bits;

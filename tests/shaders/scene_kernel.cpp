@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pathtracer/device_scene.hpp"
+#include "pathtracer/render/device_scene.hpp"
 #include "tests/support/device_test.hpp"
 
 namespace tandem::test {

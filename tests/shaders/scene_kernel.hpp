@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 #include "tests/shaders/function_kernel.hpp"
 

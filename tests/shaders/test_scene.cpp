@@ -9,7 +9,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "pathtracer/features.hpp"
+#include "pathtracer/render/features.hpp"
 #include "tests/support/device_test.hpp"
 
 namespace tandem::test {

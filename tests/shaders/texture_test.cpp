@@ -10,7 +10,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/packing.hpp>
 
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 #include "tests/shaders/random_source.hpp"
 #include "tests/shaders/scene_kernel.hpp"
 #include "tests/support/device_test.hpp"

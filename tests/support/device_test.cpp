@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "devices/devices.hpp"
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 
 namespace tandem::test {
 namespace {

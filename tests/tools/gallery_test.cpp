@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pathtracer/image_io.hpp"
+#include "pathtracer/image/image_io.hpp"
 #include "tests/support/device_test.hpp"
 #include "tests/tools/process.hpp"
 

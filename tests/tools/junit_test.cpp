@@ -1,4 +1,4 @@
-#include "tools/junit.hpp"
+#include "tools/output/junit.hpp"
 
 #include <doctest/doctest.h>
 

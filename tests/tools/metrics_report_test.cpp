@@ -1,4 +1,4 @@
-#include "tools/metrics_report.hpp"
+#include "tools/report/metrics_report.hpp"
 
 #include <doctest/doctest.h>
 

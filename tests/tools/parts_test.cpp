@@ -2,10 +2,10 @@
 
 #include <stdexcept>
 
-#include "pathtracer/error.hpp"
+#include "base/error.hpp"
 #include "tests/tools/process.hpp"
-#include "tools/output_file.hpp"
-#include "tools/spread.hpp"
+#include "tools/output/output_file.hpp"
+#include "tools/report/spread.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -29,7 +29,7 @@ TEST_CASE("a result that can no longer be written is saved elsewhere, and the se
   std::string sentence;
   try {
     write_or_rescue(files);
-  } catch (const pathtracer::Error& error) {
+  } catch (const tandem::Error& error) {
     sentence = error.what();
   }
   CHECK(sentence.find("gone") != std::string::npos);
@@ -46,7 +46,7 @@ TEST_CASE("a result that cannot be written anywhere is an error with both reason
   const auto fails = [](const std::filesystem::path&) { throw std::runtime_error("the disk is full"); };
   const OutputFile file{"x.txt", fails};
   CHECK_THROWS_WITH_AS(write_or_rescue({&file, 1}),
-                       "the disk is full; nor could it be saved elsewhere: the disk is full", pathtracer::Error);
+                       "the disk is full; nor could it be saved elsewhere: the disk is full", tandem::Error);
 }
 
 TEST_CASE("a folder for results goes again unless something was written into it") {
@@ -59,7 +59,7 @@ TEST_CASE("a folder for results goes again unless something was written into it"
   }
   { const OutputFolder again(folder.path() / "used"); }
   CHECK(folder.names() == std::vector<std::string>{"used"});
-  CHECK_THROWS_AS(OutputFolder(folder.path() / "used" / "x.txt"), pathtracer::Error);
+  CHECK_THROWS_AS(OutputFolder(folder.path() / "used" / "x.txt"), tandem::Error);
 }
 
 TEST_CASE("texts are written whole, over what was there") {

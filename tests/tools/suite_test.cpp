@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/pathtracer/description/json_schema.hpp"
+#include "tests/pathtracer/load/description/json_schema.hpp"
 #include "tests/tools/process.hpp"
 
 namespace tandem::test {

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "compare/probe/judge.hpp"
+#include "compare/probe/answer_check.hpp"
 #include "compare/probe/prober.hpp"
 #include "compare/probe/probing.hpp"
 #include "compare/probe/reference.hpp"
-#include "pathtracer/scene_loader.hpp"
+#include "pathtracer/load/scene_loader.hpp"
 #include "tests/compare/probe/rays.hpp"
 #include "tests/support/device_test.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compare/probe/ray.hpp"
-#include "pathtracer/scene.hpp"
+#include "pathtracer/scene/scene.hpp"
 
 namespace tandem::test {
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "rhi/error.hpp"
+#include "base/error.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -62,7 +62,7 @@ TEST_CASE("pixels that are not finite are left out of means, and stay in the pic
 
 TEST_CASE("batches of another size are refused") {
   BatchedEstimate estimate(2, 2, 2);
-  CHECK_THROWS_AS(estimate.add(constant(2, 1, {1, 1, 1})), rhi::Error);
+  CHECK_THROWS_AS(estimate.add(constant(2, 1, {1, 1, 1})), tandem::Error);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "rhi/error.hpp"
-#include "tests/compare/statistics/noise.hpp"
+#include "base/error.hpp"
+#include "tests/base/statistics/noise.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -87,8 +87,8 @@ TEST_CASE("pictures without noise agree when they are equal, and differ when the
 
 TEST_CASE("estimates of other sizes or tiles are refused") {
   const BatchedEstimate a(8, 8, 4);
-  CHECK_THROWS_AS(test_bias(a, BatchedEstimate(8, 4, 4)), rhi::Error);
-  CHECK_THROWS_AS(test_bias(a, BatchedEstimate(8, 8, 8)), rhi::Error);
+  CHECK_THROWS_AS(test_bias(a, BatchedEstimate(8, 4, 4)), tandem::Error);
+  CHECK_THROWS_AS(test_bias(a, BatchedEstimate(8, 8, 8)), tandem::Error);
 }
 
 /// The fraction of trials in which a bias is found that is `share` of the one stated as detectable.

@@ -1,4 +1,4 @@
-#include "tests/compare/statistics/noise.hpp"
+#include "tests/base/statistics/noise.hpp"
 
 #include <cmath>
 

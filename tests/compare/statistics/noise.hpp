@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "compare/statistics/batched_estimate.hpp"
-#include "pathtracer/image.hpp"
+#include "pathtracer/image/image.hpp"
 
 /// Pictures of noise, for tests of tests.
 namespace tandem::test {

@@ -1,12 +1,12 @@
 // Lists the devices, renders a scene on the CPU twice, on one thread and on all of them, and compares the two images.
 
-#include <compare/metrics.hpp>
-#include <compare/verdict.hpp>
+#include <compare/metrics/metrics.hpp>
+#include <compare/verdict/verdict.hpp>
 #include <cstdio>
 #include <devices/devices.hpp>
 #include <exception>
-#include <pathtracer/obj_loader.hpp>
-#include <pathtracer/renderer.hpp>
+#include <pathtracer/load/obj/obj_loader.hpp>
+#include <pathtracer/render/renderer.hpp>
 
 namespace {
 

@@ -8,7 +8,7 @@
 
 #include <spirv-tools/optimizer.hpp>
 
-#include "glsl/compile.hpp"
+#include "rhi/glsl/compile.hpp"
 #include "rhi_cpu/translate/compile_options.hpp"
 #include "rhi_cpu/translate/translate.hpp"
 

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "pathtracer/render/traced_ray.hpp"
+#include "pathtracer/scene/scene.hpp"
+
+/// Who is right when two devices give the same ray different answers: a third, exact one decides.
+namespace tandem::compare {
+
+/// A ray to which two devices gave different answers.
+struct Dispute {
+  pathtracer::TracedRay ray;
+  std::uint32_t answer_a = 0;
+  std::uint32_t answer_b = 0;
+};
+
+enum class Ruling {
+  a_right,  ///< b's answer is wrong by more than rounding explains
+  b_right,
+  both_wrong,
+  tie  ///< both answers are right within rounding
+};
+
+/// "a is right", "b is right", "both are wrong", "tie".
+const char* name(Ruling ruling);
+
+struct Judgement {
+  Ruling ruling = Ruling::tie;
+  std::uint32_t exact_answer = 0;
+};
+
+/// Answers rays exactly: one answer for each, as TracedRay::answer has it.
+using ExactTracer = std::function<std::vector<std::uint32_t>(std::span<const pathtracer::TracedRay> rays)>;
+
+/// Judges each dispute. An answer is right when it is the exact one. It is right within rounding when some ray that
+/// differs from this one by no more than 32 units in the last place of the largest coordinate involved has it exactly,
+/// or when the ray passes its triangle (not its sphere) that closely, no farther away than the exact hit: backends
+/// transform, clip and intersect in single precision, and 32 units is what the path tracer's own offset allows them
+/// (shaders/geometry/offset_ray.glsl).
+std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
+                                 const ExactTracer& trace);
+
+}  // namespace tandem::compare

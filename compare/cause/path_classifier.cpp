@@ -1,0 +1,188 @@
+#include "compare/cause/path_classifier.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "compare/cause/arbitration.hpp"
+#include "compare/cause/divergence_sentence.hpp"
+#include "compare/cause/perturbation.hpp"
+#include "compare/cause/segment_classifier.hpp"
+#include "compare/path/divergence.hpp"
+
+namespace tandem::compare {
+namespace {
+
+using pathtracer::EventKind;
+using pathtracer::PathEvent;
+using pathtracer::PathEvents;
+using pathtracer::PathId;
+using pathtracer::PathStart;
+using pathtracer::PathSummary;
+using pathtracer::Renderer;
+using pathtracer::Scene;
+namespace word = pathtracer::event_word;
+
+/// Segments whose variations are in memory at once: some 100 KB each.
+constexpr std::size_t segments_at_once = 256;
+
+/// A recording of so many segments and no more ends with an event that says so and nothing else.
+void drop_limit(PathEvents& events) {
+  if (!events.empty() && events.back().kind() == EventKind::end &&
+      events.back().words[word::end_reason] == static_cast<std::uint32_t>(pathtracer::EndReason::limit))
+    events.pop_back();
+}
+
+/// The segments of recordings, the way from the camera to the first among them, and what b makes of each.
+std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> paths,
+                                       const std::vector<PathEvents>& recordings) {
+  std::vector<JudgedSegment> segments;
+  std::vector<PathStart> starts;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const std::span<const PathEvent> events = recordings[i];
+    const std::vector<std::size_t> begins = segment_begins(events);
+    const auto add = [&](std::size_t first, std::size_t last, PathStart start) {
+      segments.push_back({.path = paths[i], .first_event = first, .a = events.subspan(first, last - first), .b = {}});
+      starts.push_back(std::move(start));
+    };
+    const auto end_after = [&](std::size_t begin) { return begin < begins.size() ? begins[begin] + 1 : events.size(); };
+    add(0, end_after(0), {.path = paths[i], .state = {}, .segment_count = 0});
+    for (std::size_t j = 0; j < begins.size(); ++j)
+      add(begins[j], end_after(j + 1), {.path = paths[i], .state = events[begins[j]], .segment_count = 1});
+  }
+  std::vector<PathEvents> recorded = b.record_paths(starts);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    drop_limit(recorded[i]);
+    segments[i].b = std::move(recorded[i]);
+    // How many rays were traced before is no part of the state.
+    PathEvents& events = segments[i].b;
+    if (!events.empty() && !segments[i].a.empty() && events.back().kind() == EventKind::end &&
+        segments[i].a.back().kind() == EventKind::end)
+      events.back().words[word::end_ray_count] = segments[i].a.back().words[word::end_ray_count];
+  }
+  return segments;
+}
+
+/// Recordings of the perturbed states of segments on a device, variation_count for each.
+std::vector<PathEvents> variations_on(Renderer& device, std::span<JudgedSegment* const> segments) {
+  std::vector<PathStart> starts;
+  for (const JudgedSegment* segment : segments)
+    for (const PathEvent& state : perturbed_states(segment->a.front()))
+      starts.push_back({.path = segment->path, .state = state, .segment_count = 1});
+  std::vector<PathEvents> recorded = device.record_paths(starts);
+  std::for_each(recorded.begin(), recorded.end(), drop_limit);
+  return recorded;
+}
+
+/// Judges segments by what both devices make of perturbed states, and returns those that need the arbiter then.
+std::vector<JudgedSegment*> judge_by_variations(const Devices& devices, const Scene& scene,
+                                                std::span<JudgedSegment* const> segments) {
+  std::vector<JudgedSegment*> disputed;
+  for (std::size_t first = 0; first < segments.size(); first += segments_at_once) {
+    const auto some = segments.subspan(first, std::min(segments_at_once, segments.size() - first));
+    std::vector<PathEvents> on_a = variations_on(devices.a, some), on_b = variations_on(devices.b, some);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const auto own = [&](std::vector<PathEvents>& all) {
+        const auto begin = std::make_move_iterator(all.begin() + static_cast<std::ptrdiff_t>(i * variation_count));
+        return std::vector<PathEvents>(begin, begin + static_cast<std::ptrdiff_t>(variation_count));
+      };
+      const Variations variations{.a = own(on_a), .b = own(on_b)};
+      if (judge(*some[i], scene, &variations) == Needed::arbiter) disputed.push_back(some[i]);
+    }
+  }
+  return disputed;
+}
+
+void judge_by_arbiter(const Devices& devices, const Scene& scene, std::span<JudgedSegment* const> segments) {
+  std::vector<Dispute> disputes;
+  std::vector<std::size_t> ends;
+  for (const JudgedSegment* segment : segments) {
+    for (const Dispute& dispute : disputes_of(*segment)) disputes.push_back(dispute);
+    ends.push_back(disputes.size());
+  }
+  if (disputes.empty()) return;
+  const std::vector<Judgement> judgements = arbitrate(
+      disputes, scene, [&](std::span<const pathtracer::TracedRay> rays) { return devices.arbiter.answer(rays); });
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < segments.size(); begin = ends[i++])
+    conclude(*segments[i], scene, std::span(judgements).subspan(begin, ends[i] - begin));
+}
+
+/// A path of which b does something else than it does from the state of each segment by itself: a mismatch.
+Parting hidden_parting(std::span<const PathEvent> a, std::span<const PathEvent> b) {
+  const std::optional<EventPlace> place = first_divergence(a, b);
+  Parting parting;
+  if (place) {
+    parting.event_index = place->event;
+    if (place->event < a.size()) parting.a = a[place->event];
+    if (place->event < b.size()) parting.b = b[place->event];
+    parting.field = field_at(a, b, *place);
+    parting.segment = parting.a.segment();
+    if (parting.field) {
+      parting.ulp_distance = ulp_distance(*parting.field, parting.a, parting.b);
+      parting.relative_difference = relative_difference(*parting.field, parting.a, parting.b);
+    }
+    parting.sentence = sentence_of(parting);
+  } else {
+    parting.sentence = "The path has other results than its recording: one of the devices does not repeat itself.";
+  }
+  return parting;
+}
+
+/// Paths without a parting so far that are still not the same as a whole.
+void find_hidden_partings(const Devices& devices, std::span<const PathEvents> recordings,
+                          std::vector<ClassifiedPath>& paths) {
+  std::vector<PathStart> starts;
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (!paths[i].partings.empty()) continue;
+    starts.push_back({.path = paths[i].path});
+    indices.push_back(i);
+  }
+  if (starts.empty()) return;
+  const std::vector<PathSummary> a = devices.a.summarize_paths(starts), b = devices.b.summarize_paths(starts);
+  for (std::size_t i = 0; i < starts.size(); ++i) {
+    if (is_same(a[i], b[i])) continue;
+    const std::vector<PathEvents> whole = devices.b.record_paths({&starts[i], 1});
+    paths[indices[i]].partings.push_back(hidden_parting(recordings[indices[i]], whole.front()));
+  }
+}
+
+}  // namespace
+
+bool is_same(const PathSummary& a, const PathSummary& b) {
+  // The rest is reserved.
+  return std::memcmp(&a, &b, offsetof(PathSummary, reserved)) == 0;
+}
+
+std::vector<ClassifiedPath> judge_paths(const Devices& devices, const Scene& scene, std::span<const PathId> paths) {
+  std::vector<PathStart> starts;
+  for (const PathId& path : paths) starts.push_back({.path = path});
+  const std::vector<PathEvents> recordings = devices.a.record_paths(starts);
+  std::vector<JudgedSegment> segments = segments_of(devices.b, paths, recordings);
+
+  std::vector<JudgedSegment*> undecided, disputed;
+  for (JudgedSegment& segment : segments) {
+    const Needed needed = judge(segment, scene, nullptr);
+    if (needed == Needed::variations) undecided.push_back(&segment);
+    if (needed == Needed::arbiter) disputed.push_back(&segment);
+  }
+  const std::vector<JudgedSegment*> more = judge_by_variations(devices, scene, undecided);
+  disputed.insert(disputed.end(), more.begin(), more.end());
+  judge_by_arbiter(devices, scene, disputed);
+
+  std::vector<ClassifiedPath> result;
+  auto segment = segments.begin();
+  for (const PathId& path : paths) {
+    ClassifiedPath& classified = result.emplace_back(ClassifiedPath{.path = path, .partings = {}});
+    for (bool first = true; segment != segments.end() && (first || has_state(*segment)); ++segment, first = false)
+      std::move(segment->partings.begin(), segment->partings.end(), std::back_inserter(classified.partings));
+  }
+  find_hidden_partings(devices, recordings, result);
+  return result;
+}
+
+}  // namespace tandem::compare

@@ -1,0 +1,145 @@
+#include "compare/cause/tie.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "compare/geometry/intersection.hpp"
+
+namespace tandem::compare {
+namespace {
+
+using pathtracer::PathEvent;
+using pathtracer::Scene;
+using pathtracer::TracedRay;
+
+GeometryRay geometry_ray(const TracedRay& ray) {
+  const glm::vec3& o = ray.origin;
+  return {.origin = glm::dvec3(o),
+          .direction = glm::dvec3(ray.direction),
+          .magnitude = std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)})};
+}
+
+Corners corners_of(const Scene& scene, std::uint32_t triangle) {
+  Corners corners;
+  for (std::size_t i = 0; i < 3; ++i) corners[i] = glm::dvec3(scene.positions[scene.triangles[triangle].vertices[i]]);
+  return corners;
+}
+
+const pathtracer::GpuSphere* sphere_of(const Scene& scene, std::uint32_t answer) {
+  const std::size_t index = std::size_t{answer} - scene.triangles.size();
+  return answer >= scene.triangles.size() && index < scene.spheres.size() ? &scene.spheres[index] : nullptr;
+}
+
+/// Where the ray meets what the answer names; none where nothing is named, or a sphere that moves.
+std::vector<Encounter> encounters_of(const Scene& scene, const TracedRay& ray, std::uint32_t answer) {
+  if (answer < scene.triangles.size()) {
+    const std::optional<Encounter> found = meet(geometry_ray(ray), corners_of(scene, answer));
+    return found ? std::vector{*found} : std::vector<Encounter>{};
+  }
+  const pathtracer::GpuSphere* const sphere = sphere_of(scene, answer);
+  if (!sphere || sphere->motion != glm::vec3(0)) return {};
+  return meet(geometry_ray(ray), *sphere);
+}
+
+bool lets_through(const Scene& scene, std::uint32_t answer) {
+  return answer < scene.triangles.size() && pathtracer::is_transparent(scene, scene.triangles[answer]);
+}
+
+/// The point of the segment that is nearest to the ray's line, by its distance from there.
+double distance_to_segment(const TracedRay& ray, const glm::dvec3& from, const glm::dvec3& to) {
+  const glm::dvec3 origin(ray.origin), along = glm::normalize(glm::dvec3(ray.direction));
+  const auto aside = [&](const glm::dvec3& p) {
+    const glm::dvec3 from_origin = p - origin;
+    return from_origin - glm::dot(from_origin, along) * along;
+  };
+  const glm::dvec3 begin = aside(from), edge = aside(to) - begin;
+  const double squared_length = glm::dot(edge, edge);
+  const double s = squared_length > 0 ? std::clamp(-glm::dot(begin, edge) / squared_length, 0.0, 1.0) : 0.0;
+  return glm::length(begin + s * edge);
+}
+
+double distance_to_outline(const Scene& scene, const TracedRay& ray, std::uint32_t triangle) {
+  const Corners corners = corners_of(scene, triangle);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < 3; ++i)
+    least = std::min(least, distance_to_segment(ray, corners[i], corners[(i + 1) % 3]));
+  return least;
+}
+
+}  // namespace
+
+DifferenceClass class_of_tie(const Scene& scene, const TracedRay& ray, std::uint32_t answer_a, std::uint32_t answer_b) {
+  if (ray.kind == pathtracer::RayKind::occlusion) return DifferenceClass::grazing_visibility;
+  const std::vector<Encounter> with_a = encounters_of(scene, ray, answer_a),
+                               with_b = encounters_of(scene, ray, answer_b);
+  const auto is_certain = [](const Encounter& encounter) { return encounter.certain; };
+  const bool inside_a = std::any_of(with_a.begin(), with_a.end(), is_certain);
+  const bool inside_b = std::any_of(with_b.begin(), with_b.end(), is_certain);
+  if (inside_a && inside_b) {
+    for (const Encounter& a : with_a)
+      for (const Encounter& b : with_b)
+        if (a.certain && b.certain && a.t_low <= b.t_high && b.t_low <= a.t_high)
+          return DifferenceClass::coincident_geometry;
+  }
+  if ((inside_a && lets_through(scene, answer_a)) || (inside_b && lets_through(scene, answer_b)))
+    return DifferenceClass::flipped_decision;
+  return DifferenceClass::edge_or_vertex_tie;
+}
+
+std::string passing_text(const Scene& scene, const TracedRay& ray, std::uint32_t answer_a, std::uint32_t answer_b) {
+  if (ray.kind == pathtracer::RayKind::occlusion) return {};
+  const bool triangle_a = answer_a < scene.triangles.size(), triangle_b = answer_b < scene.triangles.size();
+  if (triangle_a && triangle_b) {
+    std::vector<glm::dvec3> shared;
+    for (const glm::dvec3& corner : corners_of(scene, answer_a)) {
+      const Corners others = corners_of(scene, answer_b);
+      if (std::find(others.begin(), others.end(), corner) != others.end()) shared.push_back(corner);
+    }
+    if (shared.size() == 2)
+      return fmt::format("they share an edge, and it passes {:.1g} from it",
+                         distance_to_segment(ray, shared[0], shared[1]));
+    if (shared.size() == 1)
+      return fmt::format("they share a vertex, and it passes {:.1g} from it",
+                         distance_to_segment(ray, shared[0], shared[0]));
+  }
+  // Of two that do not touch, the one that it barely meets.
+  if (!triangle_a && !triangle_b) return {};
+  const double outline_a = triangle_a ? distance_to_outline(scene, ray, answer_a) : HUGE_VAL;
+  const double outline_b = triangle_b ? distance_to_outline(scene, ray, answer_b) : HUGE_VAL;
+  return fmt::format("it passes {:.1g} from an edge of triangle {}", std::min(outline_a, outline_b),
+                     outline_a <= outline_b ? answer_a : answer_b);
+}
+
+bool is_report_within_rounding(const Scene& scene, const PathEvent& a, const PathEvent& b, std::size_t field,
+                               double tolerance) {
+  namespace word = pathtracer::event_word;
+  const bool is_t = field == word::hit_t;
+  const auto close = [&](double x, double y) {
+    return std::abs(x - y) <= tolerance * (is_t ? std::max(std::abs(x), std::abs(y)) : 1.0);
+  };
+  const std::size_t count = is_t ? 1 : 2;
+  bool all_close = true;
+  for (std::size_t i = field; i < field + count; ++i)
+    all_close = all_close && (a.words[i] == b.words[i] || close(a.number(i), b.number(i)));
+  if (all_close) return true;
+  const auto is_possible = [&](const PathEvent& event) {
+    const TracedRay ray = pathtracer::ray_of({}, event);
+    const std::vector<Encounter> encounters = encounters_of(scene, ray, ray.answer);
+    return std::any_of(encounters.begin(), encounters.end(), [&](const Encounter& encounter) {
+      if (is_t) return event.number(field) >= encounter.t_low && event.number(field) <= encounter.t_high;
+      for (std::size_t i = 0; i < 2; ++i)
+        if (!(std::abs(event.number(field + i) - encounter.barycentrics[i]) <= encounter.barycentric_errors[i]))
+          return false;
+      return true;
+    });
+  };
+  return is_possible(a) && is_possible(b);
+}
+
+}  // namespace tandem::compare

@@ -1,0 +1,59 @@
+#include "conformance/kit/cases.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace tandem::conformance {
+namespace {
+
+using rhi::Capabilities;
+
+constexpr std::pair<Capability, std::string_view> capability_names[] = {
+    {&Capabilities::ray_query, "ray_query"},
+    {&Capabilities::ray_tracing_pipeline, "ray_tracing_pipeline"},
+    {&Capabilities::position_fetch, "position_fetch"},
+    {&Capabilities::trace_rays_indirect, "trace_rays_indirect"},
+    {&Capabilities::primitive_culling, "primitive_culling"},
+    {&Capabilities::null_acceleration_structure, "null_acceleration_structure"},
+    {&Capabilities::buffer_references, "buffer_references"},
+    {&Capabilities::non_uniform_indexing, "non_uniform_indexing"},
+    {&Capabilities::scalar_block_layout, "scalar_block_layout"},
+    {&Capabilities::shader_int64, "shader_int64"},
+    {&Capabilities::shader_float64, "shader_float64"},
+    {&Capabilities::timestamps, "timestamps"},
+};
+
+}  // namespace
+
+std::string_view name_of(Capability capability) {
+  const auto* const found = std::find_if(std::begin(capability_names), std::end(capability_names),
+                                         [capability](const auto& entry) { return entry.first == capability; });
+  return found == std::end(capability_names) ? "a capability without a name" : found->second;
+}
+
+std::string_view group_of(std::string_view case_name) { return case_name.substr(0, case_name.rfind('.')); }
+
+void Group::add(const std::string& last_name, const std::string& behaviour, std::function<void(Context&)> run) const {
+  cases.push_back({.name = name + "." + last_name, .behaviour = behaviour, .needs = needs, .run = std::move(run)});
+}
+
+std::vector<Case> all_cases() {
+  Cases cases;
+  add_device_cases(cases);
+  add_ray_query_builtin_cases(cases);
+  add_ray_query_traversal_cases(cases);
+  add_ray_query_procedural_cases(cases);
+  add_ray_query_flag_cases(cases);
+  add_ray_query_range_cases(cases);
+  add_ray_query_multiple_cases(cases);
+  add_ray_query_watertightness_cases(cases);
+  add_acceleration_structure_format_cases(cases);
+  add_acceleration_structure_build_cases(cases);
+  add_acceleration_structure_instance_cases(cases);
+  add_acceleration_structure_update_cases(cases);
+  add_pipeline_cases(cases);
+  return cases;
+}
+
+}  // namespace tandem::conformance

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+
+#include "pathtracer/load/description/geometry.hpp"
+#include "pathtracer/scene/scene.hpp"
+
+namespace tandem::pathtracer {
+
+/// Reads a scene description: a JSON file that docs/guide/scenes.md explains and docs/schema/scene.schema.json
+/// specifies. It is read strictly: throws Error, naming the file and the place in it ("scene.json: spheres[2].radius
+/// must be a positive number"), for members that are unknown, missing, given twice, of another type or out of range,
+/// for names that stand for nothing, for a scene without triangles and spheres, and for what the loaders of its models
+/// and images refuse.
+/// @param load_model reads the models that it names
+Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model);
+
+}  // namespace tandem::pathtracer

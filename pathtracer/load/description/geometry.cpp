@@ -1,0 +1,139 @@
+#include "pathtracer/load/description/geometry.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+
+#include "pathtracer/load/description/transform.hpp"
+#include "pathtracer/scene/merge.hpp"
+
+namespace tandem::pathtracer::description {
+namespace {
+
+std::vector<Value> elements_of(const std::optional<Value>& list) {
+  return list ? list->elements() : std::vector<Value>();
+}
+
+glm::dmat4 transform_of(const Object& object) {
+  const std::optional<Value> transform = object.get("transform");
+  return transform ? read_transform(*transform) : glm::dmat4(1.0);
+}
+
+/// What the model does without in the description's favour: materials of its own that have been given another.
+void override_materials(const Value& overrides, const NamedIndices& materials, std::size_t first, Scene& scene) {
+  for (const auto& [name, value] : overrides.members()) {
+    const std::uint32_t replacement = materials.find(value);
+    bool found = false;
+    for (std::size_t i = first; i < scene.materials.size(); ++i) {
+      if (scene.material_names[i] != name) continue;
+      scene.materials[i] = scene.materials[replacement];
+      found = true;
+    }
+    if (!found)
+      value.fail(fmt::format("stands for a material that the model does not have; it has: {}",
+                             fmt::join(scene.material_names.begin() + static_cast<std::ptrdiff_t>(first),
+                                       scene.material_names.end(), ", ")));
+  }
+}
+
+/// A quadrilateral of its own four vertices.
+void add_quadrilateral(Scene& scene, const std::array<glm::vec3, 4>& corners) {
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  scene.positions.insert(scene.positions.end(), corners.begin(), corners.end());
+  scene.normals.insert(scene.normals.end(), corners.size(), glm::vec3(0, 0, 1));
+  for (const glm::vec2 coordinates : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(1, 1), glm::vec2(0, 1)})
+    scene.texture_coordinates.push_back(coordinates);
+  scene.triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = 0});
+  scene.triangles.push_back({.vertices = {first, first + 2, first + 3}, .material = 0});
+}
+
+/// Adds a model without materials, all of it of one material of the scene.
+void place(const Value& value, Scene model, const glm::dmat4& transform, std::uint32_t material, Scene& scene) {
+  const std::size_t first = scene.triangles.size();
+  try {
+    append(scene, std::move(model), transform);
+  } catch (const Error& error) {
+    value.fail(fmt::format("cannot be placed: {}", error.what()));
+  }
+  for (std::size_t i = first; i < scene.triangles.size(); ++i) scene.triangles[i].material = material;
+}
+
+}  // namespace
+
+void add_models(const std::optional<Value>& list, const std::filesystem::path& folder, const ModelLoader& load_model,
+                const NamedIndices& materials, Scene& scene) {
+  std::map<std::filesystem::path, Scene> loaded;  // a file that is placed twice is read once
+  for (const Value& value : elements_of(list)) {
+    const Object object(value, {"file", "transform", "materials"});
+    const Value file = object.require("file");
+    const std::filesystem::path path = folder / file.text();
+    if (path.extension() == ".json") file.fail("must be a model, not another description");
+    const glm::dmat4 transform = transform_of(object);
+    if (!loaded.contains(path)) {
+      loaded.emplace(path, load_model(path));
+      scene.warnings.insert(scene.warnings.end(), loaded[path].warnings.begin(), loaded[path].warnings.end());
+      loaded[path].warnings.clear();
+    }
+    const std::size_t first_material = scene.materials.size();
+    append(scene, loaded[path], transform);
+    if (const std::optional<Value> overrides = object.get("materials"))
+      override_materials(*overrides, materials, first_material, scene);
+  }
+}
+
+void add_spheres(const std::optional<Value>& list, const NamedIndices& materials, Scene& scene) {
+  for (const Value& value : elements_of(list)) {
+    const Object object(value, {"centre", "radius", "motion", "material"});
+    GpuSphere sphere;
+    sphere.centre = object.require("centre").vector(any_length);
+    sphere.radius = object.require("radius").number(positive_length);
+    object.read("motion", sphere.motion, &Value::vector, any_length);
+    sphere.material = materials.find(object.require("material"));
+    scene.spheres.push_back(sphere);
+  }
+}
+
+void add_boxes(const std::optional<Value>& list, const NamedIndices& materials, Scene& scene) {
+  for (const Value& value : elements_of(list)) {
+    const Object object(value, {"minimum", "maximum", "transform", "material"});
+    const glm::vec3 low = object.require("minimum").vector(any_length);
+    const glm::vec3 high = object.require("maximum").vector(any_length);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(low[axis] < high[axis])) value.fail("must have a maximum above its minimum along every axis");
+    const auto corner = [&](int index) {
+      return glm::vec3((index & 1) != 0 ? high.x : low.x, (index & 2) != 0 ? high.y : low.y,
+                       (index & 4) != 0 ? high.z : low.z);
+    };
+    // Each face counter-clockwise seen from outside, upright where it stands.
+    constexpr std::array<std::array<int, 4>, 6> faces = {
+        {{4, 5, 7, 6}, {1, 0, 2, 3}, {5, 1, 3, 7}, {0, 4, 6, 2}, {6, 7, 3, 2}, {0, 1, 5, 4}}};
+    Scene box;
+    for (const auto& [a, b, c, d] : faces) add_quadrilateral(box, {corner(a), corner(b), corner(c), corner(d)});
+    place(value, std::move(box), transform_of(object), materials.find(object.require("material")), scene);
+  }
+}
+
+void add_quads(const std::optional<Value>& list, const NamedIndices& materials, Scene& scene) {
+  for (const Value& value : elements_of(list)) {
+    const Object object(value, {"corner", "u", "v", "material"});
+    const glm::vec3 corner = object.require("corner").vector(any_length);
+    const glm::vec3 u = object.require("u").vector(any_length);
+    const glm::vec3 v = object.require("v").vector(any_length);
+    add_parallelogram(value, corner, u, v, materials.find(object.require("material")), scene);
+  }
+}
+
+void add_parallelogram(const Value& value, glm::vec3 corner, glm::vec3 u, glm::vec3 v, std::uint32_t material,
+                       Scene& scene) {
+  if (glm::length(glm::cross(glm::dvec3(u), glm::dvec3(v))) == 0)
+    value.fail("must have sides u and v that span an area");
+  Scene quad;
+  add_quadrilateral(quad, {corner, corner + u, corner + u + v, corner + v});
+  place(value, std::move(quad), glm::dmat4(1.0), material, scene);
+}
+
+}  // namespace tandem::pathtracer::description

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <tiny_gltf.h>
+
+#include "base/error.hpp"
+
+namespace tandem::pathtracer {
+
+/// A parsed glTF file. Its indices, numbers and buffers are as the file gives them: nothing but the syntax is checked.
+struct GltfDocument {
+  std::string path;  ///< for messages
+  tinygltf::Model model;
+  std::vector<std::string> warnings;  ///< each sentence once
+};
+
+/// Throws Error for a file that is missing, is no glTF, lacks one of its buffers or requires an extension that Tandem
+/// does not have. An image with a URI holds the bytes of its file (none where that is missing).
+GltfDocument read_gltf(const std::filesystem::path& path);
+
+/// "mesh 2 ('vase')": how messages call an object.
+std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name);
+
+/// "vase.gltf: mesh 2 ('vase'): sentence".
+Error gltf_error(const GltfDocument& document, std::string_view object, std::string_view sentence);
+
+/// Appends a warning, unless the same sentence is one already.
+void gltf_warn(GltfDocument& document, std::string_view sentence);
+
+/// Object `index` of an array of the document. Throws Error, saying that `owner` refers to it, when there is none.
+template <class T>
+const T& gltf_at(const GltfDocument& document, const std::vector<T>& objects, int index, std::string_view kind,
+                 std::string_view owner) {
+  if (index < 0 || static_cast<std::size_t>(index) >= objects.size())
+    throw gltf_error(document, owner,
+                     "refers to " + std::string(kind) + " " + std::to_string(index) + ", but there are " +
+                         std::to_string(objects.size()));
+  return objects[static_cast<std::size_t>(index)];
+}
+
+/// A number that must be finite. Where it is outside of [low, high] it is clamped, with a warning.
+float gltf_number(GltfDocument& document, double value, double low, double high, std::string_view owner,
+                  std::string_view property);
+
+/// A member of an extension of an object, or nullptr.
+const tinygltf::Value* gltf_extension(const tinygltf::ExtensionMap& extensions, const std::string& extension);
+const tinygltf::Value* gltf_member(const tinygltf::Value& object, const std::string& member);
+
+/// The bytes of a buffer view. Throws Error when they are not inside its buffer.
+std::span<const unsigned char> gltf_view(const GltfDocument& document, int buffer_view, std::string_view owner);
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,185 @@
+#include "pathtracer/load/gltf/loader.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "pathtracer/load/gltf/materials.hpp"
+#include "pathtracer/load/gltf/meshes.hpp"
+#include "pathtracer/load/gltf/nodes.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+/// Where a ray meets a triangle is found from products of three coordinates, which must be floats.
+constexpr double largest_coordinate = 1e12;
+/// So many vertices the triangles of a scene can name.
+constexpr std::size_t most_vertices = std::numeric_limits<std::uint32_t>::max();
+
+struct Reading {
+  GltfDocument document;
+  Scene scene;
+  std::vector<GltfMaterial> materials;
+  std::map<int, std::vector<GltfPrimitive>> meshes;                               ///< those that nodes have used so far
+  std::map<std::pair<std::size_t, std::array<float, 4>>, std::uint32_t> colored;  ///< index into the scene's materials
+};
+
+/// The scene's material for a primitive. Those of the file keep their index; others are appended.
+std::uint32_t scene_material(Reading& reading, const GltfPrimitive& primitive) {
+  const GltfMaterial& material = reading.materials[primitive.material];
+  const bool is_default = primitive.material + 1 == reading.materials.size();
+  if (primitive.color == glm::vec4(1) && !is_default) return static_cast<std::uint32_t>(primitive.material);
+  const auto [entry, is_new] = reading.colored.try_emplace(
+      {primitive.material, {primitive.color.r, primitive.color.g, primitive.color.b, primitive.color.a}},
+      static_cast<std::uint32_t>(reading.scene.materials.size()));
+  if (is_new) {
+    reading.scene.materials.push_back(colored_material(material, primitive.color));
+    reading.scene.material_names.push_back(material.name);
+  }
+  return entry->second;
+}
+
+/// Transforms normals with the transform of their mesh: its cofactors are its inverse transposed times its determinant,
+/// and exist where it has no inverse.
+class NormalTransform {
+ public:
+  explicit NormalTransform(const glm::dmat3& transform)
+      : cofactors_(glm::cross(transform[1], transform[2]), glm::cross(transform[2], transform[0]),
+                   glm::cross(transform[0], transform[1])),
+        is_mirror_(glm::determinant(transform) < 0) {}
+
+  bool is_mirror() const { return is_mirror_; }
+
+  /// Of unit length, or 0 where it has no direction.
+  glm::vec3 operator()(glm::vec3 normal) const {
+    const glm::dvec3 unscaled = cofactors_ * glm::dvec3(normal) * (is_mirror_ ? -1.0 : 1.0);
+    const double length = glm::length(unscaled);
+    return length > 0 && std::isfinite(length) ? glm::vec3(unscaled / length) : glm::vec3(0);
+  }
+
+ private:
+  glm::dmat3 cofactors_;
+  bool is_mirror_;
+};
+
+/// Whether all corners have a normal, and one of them deviates from the triangle's own by more than a thousandth.
+bool is_smooth(const Scene& scene, const GpuTriangle& triangle) {
+  const glm::dvec3 a(scene.positions[triangle.vertices[0]]);
+  const glm::dvec3 b(scene.positions[triangle.vertices[1]]);
+  const glm::dvec3 c(scene.positions[triangle.vertices[2]]);
+  const glm::dvec3 area = glm::cross(b - a, c - a);
+  if (!(glm::length(area) > 0)) return false;
+  const glm::dvec3 flat = glm::normalize(area);
+  bool deviates = false;
+  for (const std::uint32_t vertex : triangle.vertices) {
+    const glm::vec3 normal = scene.normals[vertex];
+    if (normal == glm::vec3(0)) return false;
+    deviates = deviates || glm::length(glm::cross(flat, glm::dvec3(normal))) > 1e-3;
+  }
+  return deviates;
+}
+
+glm::vec3 checked_position(const Reading& reading, const GltfNode& node, const GltfPrimitive& primitive,
+                           std::uint32_t vertex) {
+  const glm::dvec3 position(node.transform * glm::dvec4(glm::dvec3(primitive.positions[vertex]), 1));
+  for (int axis = 0; axis < 3; ++axis)
+    if (!(std::abs(position[axis]) <= largest_coordinate))
+      throw gltf_error(reading.document, primitive.name,
+                       fmt::format("vertex {} at {} is not within {:g}, the farthest that rays reach", vertex,
+                                   node.name, largest_coordinate));
+  return glm::vec3(position);
+}
+
+/// Adds the triangles of a primitive at a node, with the vertices that they use.
+void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& primitive) {
+  Scene& scene = reading.scene;
+  const NormalTransform to_world{glm::dmat3(node.transform)};
+  const std::uint32_t material = scene_material(reading, primitive);
+  constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> vertices(primitive.positions.size(), unused);
+  if (primitive.positions.size() >= most_vertices - scene.positions.size())
+    throw gltf_error(reading.document, node.name, "the scene has more vertices than 32 bits count");
+  for (const std::array<std::uint32_t, 3>& corners : primitive.triangles) {
+    GpuTriangle triangle{.vertices = {}, .material = material};
+    for (std::size_t i = 0; i < 3; ++i) {
+      // A mirrored triangle is seen counter-clockwise from outside again.
+      const std::uint32_t corner = corners[to_world.is_mirror() && i > 0 ? 3 - i : i];
+      if (vertices[corner] == unused) {
+        vertices[corner] = static_cast<std::uint32_t>(scene.positions.size());
+        scene.positions.push_back(checked_position(reading, node, primitive, corner));
+        scene.normals.push_back(primitive.normals.empty() ? glm::vec3(0) : to_world(primitive.normals[corner]));
+        scene.texture_coordinates.push_back(
+            primitive.texture_coordinates.empty() ? glm::vec2(0, 1) : primitive.texture_coordinates[corner]);
+      }
+      triangle.vertices[i] = vertices[corner];
+    }
+    if (is_smooth(scene, triangle)) triangle.material |= triangle_smooth;
+    scene.triangles.push_back(triangle);
+  }
+}
+
+void add_mesh(Reading& reading, const GltfNode& node) {
+  const int index = node.source->mesh;
+  auto entry = reading.meshes.find(index);
+  if (entry == reading.meshes.end())
+    entry = reading.meshes.emplace(index, read_gltf_mesh(reading.document, reading.materials, index, node.name)).first;
+  for (const GltfPrimitive& primitive : entry->second) add_primitive(reading, node, primitive);
+  for (const double weight : node.source->weights)
+    if (weight != 0) gltf_warn(reading.document, "morph targets have no effect");
+  if (node.source->skin >= 0)
+    gltf_warn(reading.document, "skins have no effect: meshes keep the pose they are stored in");
+}
+
+void add_camera(Reading& reading, const GltfNode& node) {
+  if (reading.scene.camera)
+    return gltf_warn(reading.document, "of several cameras the first in the order of the nodes counts");
+  reading.scene.camera = read_gltf_camera(reading.document, node);
+}
+
+void add_light(Reading& reading, const GltfNode& node, const tinygltf::Value& extension) {
+  const tinygltf::Value* index = gltf_member(extension, "light");
+  if (index == nullptr || !index->IsInt())
+    throw gltf_error(reading.document, node.name, "its KHR_lights_punctual names no light");
+  reading.scene.lights.push_back(read_gltf_light(reading.document, index->GetNumberAsInt(), node));
+}
+
+/// Normals without direction are in no smooth triangle, where they would mean something.
+void fill_normals(Scene& scene) {
+  for (glm::vec3& normal : scene.normals)
+    if (normal == glm::vec3(0)) normal = glm::vec3(0, 0, 1);
+}
+
+}  // namespace
+
+Scene load_gltf(const std::filesystem::path& path) {
+  Reading reading;
+  reading.document = read_gltf(path);
+  reading.scene.name = path.filename().string();
+  reading.materials = read_gltf_materials(reading.document, reading.scene);
+  // But the last, that of primitives without one, which comes when it is needed.
+  for (std::size_t i = 0; i + 1 < reading.materials.size(); ++i) {
+    reading.scene.materials.push_back(colored_material(reading.materials[i], glm::vec4(1)));
+    reading.scene.material_names.push_back(reading.materials[i].name);
+  }
+  for (const GltfNode& node : place_gltf_nodes(reading.document)) {
+    if (node.source->mesh >= 0) add_mesh(reading, node);
+    if (node.source->camera >= 0) add_camera(reading, node);
+    if (const tinygltf::Value* light = gltf_extension(node.source->extensions, "KHR_lights_punctual"))
+      add_light(reading, node, *light);
+  }
+  if (!reading.document.model.animations.empty()) gltf_warn(reading.document, "animations are not played");
+  if (reading.scene.triangles.empty()) throw Error(fmt::format("'{}' holds no triangles", path.string()));
+  fill_normals(reading.scene);
+  if (reading.scene.textures.empty()) reading.scene.texture_coordinates.clear();
+  reading.scene.warnings = std::move(reading.document.warnings);
+  return std::move(reading.scene);
+}
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec4.hpp>
+
+#include "pathtracer/load/gltf/document.hpp"
+#include "pathtracer/scene/scene.hpp"
+
+namespace tandem::pathtracer {
+
+/// A material of a document.
+struct GltfMaterial {
+  GpuMaterial material;
+  std::string name;
+  int coordinates = -1;      ///< the set of texture coordinates (TEXCOORD_n) that its textures use, -1: none
+  bool emits_color = false;  ///< KHR_materials_unlit
+  bool has_alpha = false;    ///< its alpha mode is not OPAQUE
+};
+
+/// Reads all materials, and their textures into the scene, and appends the one of primitives that have none.
+std::vector<GltfMaterial> read_gltf_materials(GltfDocument& document, Scene& scene);
+
+/// The material of a primitive whose vertices all have one colour, which multiplies its base colour. A cut-out that
+/// covers everything or nothing is no cut-out any more.
+GpuMaterial colored_material(const GltfMaterial& material, glm::vec4 color);
+
+}  // namespace tandem::pathtracer

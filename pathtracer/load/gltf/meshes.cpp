@@ -1,0 +1,161 @@
+#include "pathtracer/load/gltf/meshes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "pathtracer/load/gltf/accessor.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+/// An attribute of a primitive, or nothing where it has none.
+std::optional<GltfValues> attribute(const GltfDocument& document, const tinygltf::Primitive& source,
+                                    const GltfPrimitive& primitive, const std::string& name, std::size_t least,
+                                    std::size_t most) {
+  const auto entry = source.attributes.find(name);
+  if (entry == source.attributes.end()) return std::nullopt;
+  GltfValues values = gltf_vectors(document, entry->second, least, most, fmt::format("{} of {}", name, primitive.name));
+  if (!primitive.positions.empty() && values.count != primitive.positions.size())
+    throw gltf_error(
+        document, primitive.name,
+        fmt::format("{} has {} elements, but POSITION has {}", name, values.count, primitive.positions.size()));
+  return values;
+}
+
+std::vector<glm::vec3> vectors(const GltfValues& values) {
+  std::vector<glm::vec3> result(values.count);
+  for (std::size_t i = 0; i < values.count; ++i)
+    result[i] = {values.values[3 * i], values.values[3 * i + 1], values.values[3 * i + 2]};
+  return result;
+}
+
+/// Triples of corners from a list, a strip or a fan (glTF 2.0, section 3.7.2.1).
+std::vector<std::array<std::uint32_t, 3>> assemble(const GltfDocument& document, int mode,
+                                                   const std::vector<std::uint32_t>& corners, std::string_view owner) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  if (mode == TINYGLTF_MODE_TRIANGLES) {
+    if (corners.size() % 3 != 0)
+      throw gltf_error(document, owner, fmt::format("{} corners make no whole triangles", corners.size()));
+    for (std::size_t i = 0; i < corners.size(); i += 3)
+      triangles.push_back({corners[i], corners[i + 1], corners[i + 2]});
+    return triangles;
+  }
+  for (std::size_t i = 0; i + 2 < corners.size(); ++i)
+    if (mode == TINYGLTF_MODE_TRIANGLE_STRIP)
+      triangles.push_back({corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]});
+    else
+      triangles.push_back({corners[i + 1], corners[i + 2], corners[0]});
+  return triangles;
+}
+
+void read_normals(GltfDocument& document, const tinygltf::Primitive& source, GltfPrimitive& primitive) {
+  const auto values = attribute(document, source, primitive, "NORMAL", 3, 3);
+  if (!values) return;
+  primitive.normals = vectors(*values);
+  const bool have_directions = std::ranges::all_of(primitive.normals, [](glm::vec3 normal) {
+    const float length = glm::length(normal);
+    return length > 0 && std::isfinite(length);
+  });
+  if (!have_directions)
+    gltf_warn(document, fmt::format("{} has normals without direction, whose triangles are flat", primitive.name));
+}
+
+void read_texture_coordinates(GltfDocument& document, const tinygltf::Primitive& source, int set,
+                              GltfPrimitive& primitive) {
+  if (set < 0) return;
+  const auto values = attribute(document, source, primitive, fmt::format("TEXCOORD_{}", set), 2, 2);
+  if (!values) {
+    gltf_warn(document, fmt::format("{} lacks TEXCOORD_{}, so its textures show the colour of their upper left corner",
+                                    primitive.name, set));
+    return;
+  }
+  bool all_finite = true;
+  for (std::size_t i = 0; i < values->count; ++i) {
+    const glm::vec2 coordinate{values->values[2 * i], 1 - values->values[2 * i + 1]};
+    const bool finite = std::isfinite(coordinate.x) && std::isfinite(coordinate.y);
+    all_finite = all_finite && finite;
+    primitive.texture_coordinates.push_back(finite ? coordinate : glm::vec2(0));
+  }
+  if (!all_finite)
+    gltf_warn(document, fmt::format("{} has texture coordinates that are no finite numbers", primitive.name));
+}
+
+void read_color(GltfDocument& document, const tinygltf::Primitive& source, GltfPrimitive& primitive) {
+  const auto values = attribute(document, source, primitive, "COLOR_0", 3, 4);
+  if (!values) return;
+  const std::size_t n = values->components;
+  for (std::size_t i = n; i < values->values.size(); ++i)
+    if (values->values[i] != values->values[i % n])
+      return gltf_warn(document, "colours that vary over the vertices of a primitive (COLOR_0) have no effect");
+  for (std::size_t i = 0; i < n; ++i)
+    primitive.color[static_cast<int>(i)] =
+        gltf_number(document, double{values->values[i]}, 0, 1, primitive.name, "COLOR_0");
+}
+
+bool is_morphed(const std::vector<double>& weights) {
+  return std::ranges::any_of(weights, [](double weight) { return weight != 0; });
+}
+
+/// Nothing for a primitive without triangles.
+std::optional<GltfPrimitive> read_primitive(GltfDocument& document, const std::vector<GltfMaterial>& materials,
+                                            const tinygltf::Primitive& source, std::string name) {
+  const bool has_triangles = source.mode >= TINYGLTF_MODE_TRIANGLES && source.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
+  if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+    throw gltf_error(document, name, fmt::format("{} is no mode of primitives", source.mode));
+  if (!has_triangles) {
+    gltf_warn(document, "points and lines are not drawn");
+    return std::nullopt;
+  }
+  GltfPrimitive primitive;
+  primitive.name = std::move(name);
+  const auto positions = attribute(document, source, primitive, "POSITION", 3, 3);
+  if (!positions) {
+    gltf_warn(document, fmt::format("{} has no POSITION and is not drawn", primitive.name));
+    return std::nullopt;
+  }
+  if (positions->count > 0xffffffffu)
+    throw gltf_error(document, primitive.name, "has more vertices than 32 bits count");
+  primitive.positions = vectors(*positions);
+
+  primitive.material = materials.size() - 1;
+  if (source.material >= 0) {
+    gltf_at(document, document.model.materials, source.material, "material", primitive.name);
+    primitive.material = static_cast<std::size_t>(source.material);
+  }
+  read_normals(document, source, primitive);
+  read_texture_coordinates(document, source, materials[primitive.material].coordinates, primitive);
+  read_color(document, source, primitive);
+
+  std::vector<std::uint32_t> corners;
+  if (source.indices >= 0) {
+    corners = gltf_indices(document, source.indices, primitive.positions.size(), primitive.name);
+  } else {
+    corners.resize(primitive.positions.size());
+    std::iota(corners.begin(), corners.end(), 0u);
+  }
+  primitive.triangles = assemble(document, source.mode, corners, primitive.name);
+  return primitive;
+}
+
+}  // namespace
+
+std::vector<GltfPrimitive> read_gltf_mesh(GltfDocument& document, const std::vector<GltfMaterial>& materials, int index,
+                                          std::string_view owner) {
+  const tinygltf::Mesh& mesh = gltf_at(document, document.model.meshes, index, "mesh", owner);
+  const std::string name = gltf_name("mesh", static_cast<std::size_t>(index), mesh.name);
+  std::vector<GltfPrimitive> primitives;
+  for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+    auto primitive =
+        read_primitive(document, materials, mesh.primitives[i], fmt::format("primitive {} of {}", i, name));
+    if (primitive) primitives.push_back(std::move(*primitive));
+  }
+  if (is_morphed(mesh.weights)) gltf_warn(document, "morph targets have no effect");
+  return primitives;
+}
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include "pathtracer/load/gltf/document.hpp"
+#include "pathtracer/load/gltf/materials.hpp"
+
+namespace tandem::pathtracer {
+
+/// Triangles of one material, in the space of their mesh.
+struct GltfPrimitive {
+  std::string name;  ///< for messages
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;              ///< one for each position, of any length; or none
+  std::vector<glm::vec2> texture_coordinates;  ///< likewise, v upwards; of the set that the material's textures use
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< into the arrays above, all of them in range
+  std::size_t material = 0;                             ///< index into the materials of the document
+  glm::vec4 color{1};                                   ///< that all vertices have
+};
+
+/// Reads the triangles of a mesh. Points, lines, morph targets and varying colours are warnings. Throws Error for
+/// attributes that do not fit each other.
+std::vector<GltfPrimitive> read_gltf_mesh(GltfDocument& document, const std::vector<GltfMaterial>& materials, int mesh,
+                                          std::string_view owner);
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+
+#include "pathtracer/load/gltf/document.hpp"
+#include "pathtracer/scene/camera.hpp"
+#include "pathtracer/scene/scene.hpp"
+
+namespace tandem::pathtracer {
+
+/// A node of the default scene.
+struct GltfNode {
+  const tinygltf::Node* source;
+  std::string name;      ///< for messages
+  glm::dmat4 transform;  ///< to world space
+};
+
+/// All nodes of the default scene, parents before children. A file without scenes shows all its nodes. Throws Error for
+/// a node that has two parents or is its own ancestor, and for a transform that is none.
+std::vector<GltfNode> place_gltf_nodes(const GltfDocument& document);
+
+/// The camera of a node, in world space. Throws Error for one that sees nothing.
+Camera read_gltf_camera(const GltfDocument& document, const GltfNode& node);
+
+/// The light `index` of KHR_lights_punctual at a node. Candela and lux count as radiometric units with factor 1.
+PunctualLight read_gltf_light(GltfDocument& document, int index, const GltfNode& node);
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,99 @@
+#include "pathtracer/load/obj/wavefront_text.hpp"
+
+#include <charconv>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text_file.hpp"
+
+namespace tandem::pathtracer {
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+template <typename Number>
+bool parse_whole(std::string_view word, Number& value) {
+  // from_chars takes no plus sign; "+-1" is still no number.
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc() && end == word.data() + word.size();
+}
+
+}  // namespace
+
+WavefrontText::WavefrontText(std::filesystem::path path, Filter filter)
+    : path_(std::move(path)), filter_(std::move(filter)), text_(read_text(path_)), stream_(this) {
+  // Otherwise the stream would swallow what the filter throws.
+  stream_.exceptions(std::ios::badbit);
+}
+
+Error WavefrontText::error(std::string_view why) const {
+  return Error(fmt::format("{}:{}: {}", path_.string(), line_, why));
+}
+
+bool WavefrontText::next_statement(std::string& statement) {
+  statement.clear();
+  if (position_ >= text_.size()) return false;
+  line_ = next_line_;
+  for (bool continued = true; continued && position_ < text_.size();) {
+    const std::size_t end = std::min(text_.find_first_of("\r\n", position_), text_.size());
+    std::string_view line = trimmed(std::string_view(text_).substr(position_, end - position_));
+    position_ = end + (text_.compare(end, 2, "\r\n") == 0 ? 2 : 1);
+    ++next_line_;
+    continued = line.ends_with('\\');
+    if (continued) line.remove_suffix(1);
+    statement += line;
+    if (continued) statement += ' ';
+  }
+  return true;
+}
+
+WavefrontText::int_type WavefrontText::underflow() {
+  std::string statement;
+  while (next_statement(statement)) {
+    const std::string_view content = trimmed(statement);
+    if (content.empty() || content.starts_with('#')) continue;
+    current_ = filter_(content);
+    if (current_.empty()) continue;
+    current_ += '\n';
+    setg(current_.data(), current_.data(), current_.data() + current_.size());
+    return traits_type::to_int_type(current_.front());
+  }
+  return traits_type::eof();
+}
+
+Statement split_statement(std::string_view statement) {
+  Statement parts;
+  parts.rest = statement;
+  parts.keyword = take_word(parts.rest);
+  parts.rest = trimmed(parts.rest);
+  return parts;
+}
+
+std::string_view take_word(std::string_view& text) {
+  const std::size_t first = std::min(text.find_first_not_of(blanks), text.size());
+  const std::size_t end = std::min(text.find_first_of(blanks, first), text.size());
+  const std::string_view word = text.substr(first, end - first);
+  text.remove_prefix(end);
+  return word;
+}
+
+bool parse_number(std::string_view word, double& value) {
+  if (parse_whole(word, value)) return true;
+  // Beyond the range of double, what remains is 0 or infinity.
+  long double wide = 0;
+  if (!parse_whole(word, wide)) return false;
+  value = static_cast<double>(wide);
+  return true;
+}
+bool parse_integer(std::string_view word, int& value) { return parse_whole(word, value); }
+
+}  // namespace tandem::pathtracer

@@ -1,0 +1,231 @@
+#include "rhi_cpu/cache/kernel_cache.hpp"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "rhi/error.hpp"
+#include "rhi_cpu/cache/kernel_seal.hpp"
+
+namespace tandem::cpu {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr const char* message_source = "cpu kernel cache";
+/// A work folder this old has no process behind it any more.
+constexpr auto abandoned_after = 1h;
+/// A file used this recently may be about to be opened by another process.
+constexpr auto in_use_for = 10s;
+
+/// The variable's value, nothing when it is unset or empty.
+std::optional<std::string> environment_variable(const char* name) {
+  const char* value = std::getenv(name);
+  if (value == nullptr || *value == '\0') return std::nullopt;
+  return value;
+}
+
+/// Where the cache is to be; "" when the environment names no place.
+fs::path wanted_folder(const fs::path& chosen) {
+  if (!chosen.empty()) return fs::absolute(chosen);
+  if (const auto folder = environment_variable("TANDEM_CACHE_DIR")) return fs::absolute(*folder);
+  // The XDG base directory specification has relative paths ignored.
+  if (const auto folder = environment_variable("XDG_CACHE_HOME"); folder && fs::path(*folder).is_absolute())
+    return fs::path(*folder) / "tandem";
+  if (const auto home = environment_variable("HOME")) return fs::path(*home) / ".cache" / "tandem";
+  return {};
+}
+
+/// A new folder, named `prefix` and six characters, that only this user can enter; "" when it cannot be made.
+fs::path make_private_folder(const fs::path& prefix) {
+  std::string path = prefix.string() + "XXXXXX";
+  return ::mkdtemp(path.data()) == nullptr ? fs::path() : fs::path(path);
+}
+
+struct Entry {
+  fs::path path;
+  fs::file_time_type used;
+  std::uint64_t size = 0;
+};
+
+std::uint64_t size_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error)) {
+    const std::uint64_t size = fs::file_size(path, error);
+    return error ? 0 : size;
+  }
+  std::uint64_t sum = 0;
+  for (fs::recursive_directory_iterator file(path, error), end; !error && file != end; file.increment(error)) {
+    std::error_code ignored;
+    if (file->is_regular_file(ignored)) sum += size_of(file->path());
+  }
+  return sum;
+}
+
+}  // namespace
+
+TemporaryFolder::~TemporaryFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+std::uint64_t kernel_cache_bound(const rhi::MessageCallback& on_message) {
+  constexpr std::uint64_t mebibyte = 1 << 20;
+  constexpr std::uint64_t usual = 256 * mebibyte;
+  const auto text = environment_variable("TANDEM_CACHE_MAX_MB");
+  if (!text) return usual;
+  std::uint64_t value = 0;
+  const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), value);
+  if (error == std::errc() && end == text->data() + text->size() && value < (1ull << 40)) return value * mebibyte;
+  if (on_message)
+    on_message({.severity = rhi::Severity::warning,
+                .source = message_source,
+                .text = fmt::format("TANDEM_CACHE_MAX_MB={} is no whole number of MiB; the bound is 256", *text)});
+  return usual;
+}
+
+KernelCache::KernelCache(fs::path folder, rhi::MessageCallback on_message)
+    : on_message_(std::move(on_message)), bound_(kernel_cache_bound(on_message_)) {
+  folder_ = wanted_folder(std::move(folder));
+  std::string why_not;
+  if (!folder_.empty() && prepare(folder_, why_not)) return;
+  const std::string wanted = folder_.empty() ? "no folder for compiled kernels is known (HOME is not set)"
+                                             : fmt::format("the folder {} {}", folder_.string(), why_not);
+  std::error_code ignored;
+  folder_ = make_private_folder(fs::temp_directory_path(ignored) / "tandem-");
+  if (folder_.empty())
+    throw rhi::Error(rhi::ErrorCode::io, message_source,
+                     wanted + ", and no temporary folder can be made either; set TANDEM_CACHE_DIR to one that can");
+  fallback_ = TemporaryFolder(folder_);
+  say(rhi::Severity::warning, wanted + "; kernels compiled now are lost when the program ends");
+}
+
+bool KernelCache::prepare(const fs::path& folder, std::string& why_not) const {
+  std::error_code error;
+  const bool is_new = fs::create_directories(folder, error);
+  if (!error && is_new) fs::permissions(folder, fs::perms::owner_all, error);
+  if (error) {
+    why_not = "cannot be created: " + error.message();
+    return false;
+  }
+  if ((fs::status(folder, error).permissions() & fs::perms::others_write) != fs::perms::none) {
+    why_not = "may be written by everybody, so that nothing in it can be trusted";
+    return false;
+  }
+  const TemporaryFolder probe(make_private_folder(folder / "work-"));
+  if (!probe.path().empty()) return true;
+  why_not = fmt::format("cannot be written: {}", std::strerror(errno));
+  return false;
+}
+
+KernelCacheStatistics KernelCache::statistics() const {
+  return {.hits = hits_, .added = added_, .damaged = damaged_, .evicted = evicted_};
+}
+
+KernelLibraryHandle KernelCache::find(const ContentHash& key, const std::string& label) {
+  const fs::path path = folder_ / (key.hex() + ".so");
+  std::error_code error;
+  if (!fs::exists(path, error)) return nullptr;
+  std::string problem = "it is damaged";
+  if (kernel_file_is_sound(path, key)) {
+    auto loaded = load_kernel_library(path);
+    if (const auto* library = std::get_if<KernelLibraryHandle>(&loaded)) {
+      fs::last_write_time(path, fs::file_time_type::clock::now(), error);
+      ++hits_;
+      say(rhi::Severity::info, fmt::format("{}: loaded {}", label, path.string()));
+      return *library;
+    }
+    problem = std::get<std::string>(loaded);
+  }
+  fs::remove(path, error);
+  ++damaged_;
+  say(rhi::Severity::info, fmt::format("{}: {} is compiled anew: {}", label, path.string(), problem));
+  return nullptr;
+}
+
+TemporaryFolder KernelCache::make_work_folder(const std::string& label) {
+  TemporaryFolder folder(make_private_folder(folder_ / "work-"));
+  if (folder.path().empty())
+    throw rhi::Error(rhi::ErrorCode::io, label,
+                     fmt::format("the kernel cache {} cannot be written: {}; set TANDEM_CACHE_DIR to a folder that can",
+                                 folder_.string(), std::strerror(errno)));
+  return folder;
+}
+
+KernelLibraryHandle KernelCache::add(const ContentHash& key, const fs::path& library, const std::string& label) {
+  const fs::path path = folder_ / (key.hex() + ".so");
+  std::error_code error;
+  if (seal_kernel_file(library, key))
+    fs::rename(library, path, error);
+  else
+    error = std::make_error_code(std::errc::io_error);
+  if (error)
+    throw rhi::Error(rhi::ErrorCode::io, label,
+                     fmt::format("the compiled kernel {} cannot be written: {}", path.string(), error.message()));
+  ++added_;
+  auto loaded = load_kernel_library(path);
+  if (const auto* problem = std::get_if<std::string>(&loaded))
+    throw rhi::Error(rhi::ErrorCode::io, label,
+                     fmt::format("the compiled kernel cannot be loaded: {}; if its folder does not allow programs to "
+                                 "run, set TANDEM_CACHE_DIR to one that does",
+                                 *problem));
+  enforce_bound(path);
+  return std::get<KernelLibraryHandle>(loaded);
+}
+
+fs::path KernelCache::keep_failure(TemporaryFolder folder, const ContentHash& key) {
+  fs::path kept = folder_ / ("failed-" + key.hex());
+  std::error_code error;
+  fs::remove_all(kept, error);
+  fs::rename(folder.path(), kept, error);
+  if (error) return folder.release();
+  folder.release();
+  enforce_bound(kept);
+  return kept;
+}
+
+void KernelCache::enforce_bound(const fs::path& newest) {
+  const auto now = fs::file_time_type::clock::now();
+  std::vector<Entry> entries;
+  std::uint64_t sum = 0;
+  std::error_code error;
+  for (fs::directory_iterator item(folder_, error), end; !error && item != end; item.increment(error)) {
+    std::error_code gone;
+    const fs::file_time_type used = item->last_write_time(gone);
+    if (gone) continue;
+    const std::string name = item->path().filename().string();
+    if (name.starts_with("work-")) {
+      if (now - used > abandoned_after) fs::remove_all(item->path(), gone);
+    } else if (name.starts_with("failed-") || item->path().extension() == ".so") {
+      entries.push_back({.path = item->path(), .used = used, .size = size_of(item->path())});
+      sum += entries.back().size;
+    }
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
+  for (const Entry& entry : entries) {
+    if (sum <= bound_) return;
+    if (entry.path == newest || now - entry.used < in_use_for) continue;
+    std::error_code gone;
+    fs::remove_all(entry.path, gone);
+    sum -= entry.size;
+    ++evicted_;
+  }
+}
+
+void KernelCache::say(rhi::Severity severity, const std::string& text) const {
+  if (on_message_) on_message_({.severity = severity, .source = message_source, .text = text});
+}
+
+}  // namespace tandem::cpu

@@ -1,0 +1,121 @@
+#include "rhi_cpu/cache/kernel_store.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "rhi/error.hpp"
+#include "rhi_cpu/cache/kernel_headers.hpp"
+#include "rhi_cpu/translate/translate.hpp"
+
+namespace tandem::cpu {
+namespace {
+
+/// The value of every specialisation constant of the shader, in the order of reflection.
+std::vector<rhi::SpecializationValue> complete(const rhi::ShaderReflection& reflection,
+                                               std::span<const rhi::SpecializationValue> given) {
+  std::vector<rhi::SpecializationValue> values;
+  for (const rhi::SpecializationConstant& constant : reflection.specialization_constants) {
+    const auto found =
+        std::find_if(given.begin(), given.end(), [&](const auto& value) { return value.id == constant.id; });
+    values.push_back({.id = constant.id, .value = found == given.end() ? constant.default_value : found->value});
+  }
+  return values;
+}
+
+/// Whether the kernel was made of the shader and the values, which are complete.
+bool is_made_of(const PrecompiledKernel& kernel, const rhi::ShaderModule& shader,
+                std::span<const rhi::SpecializationValue> values) {
+  const std::vector<rhi::SpecializationValue> own = complete(shader.reflection(), kernel.specialization);
+  return std::ranges::equal(kernel.spirv, shader.spirv()) &&
+         std::ranges::equal(own, values, {}, &rhi::SpecializationValue::value, &rhi::SpecializationValue::value);
+}
+
+/// Everything that the native code of a shader depends on.
+ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::SpecializationValue> values,
+                   const KernelCompiler& compiler) {
+  ContentHasher hasher;
+  hasher.add(std::uint64_t{kernel::abi_version}).add(std::uint64_t{translator_version});
+  for (const KernelHeader& header : kernel_headers()) hasher.add(header.path).add(header.text);
+  hasher.add(compiler.path.string()).add(compiler.version);
+  hasher.add(kernel_compile_options()).add(processor_identity());
+  hasher.add(std::as_bytes(spirv));
+  for (const rhi::SpecializationValue& value : values)
+    hasher.add(std::uint64_t{value.id}).add(std::uint64_t{value.value});
+  return hasher.hash();
+}
+
+}  // namespace
+
+KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, std::filesystem::path cache_folder,
+                         rhi::MessageCallback on_message)
+    : precompiled_(std::move(precompiled)),
+      cache_folder_(std::move(cache_folder)),
+      on_message_(std::move(on_message)) {}
+
+Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> given,
+                           const std::string& label) {
+  const std::vector<rhi::SpecializationValue> values = complete(shader.reflection(), given);
+  const auto found = std::ranges::find_if(
+      precompiled_, [&](const PrecompiledKernel& kernel) { return is_made_of(kernel, shader, values); });
+  if (found != precompiled_.end()) return {.info = found->entry(), .library = nullptr};
+
+  const ContentHash key = key_of(shader.spirv(), values, compiler(label));
+  const std::shared_ptr<Entry> known = entry(key);
+  const std::lock_guard lock(known->mutex);
+  KernelLibraryHandle library = known->library.lock();
+  if (library == nullptr) library = cache().find(key, label);
+  if (library == nullptr) library = compile(shader, values, key, label);
+  known->library = library;
+  return {.info = &library->info(), .library = library};
+}
+
+KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
+                                         std::span<const rhi::SpecializationValue> values, const ContentHash& key,
+                                         const std::string& label) {
+  const auto start = std::chrono::steady_clock::now();
+  const Translation translation = translate(shader.spirv(), label, {.specialization = values});
+  KernelCache& store = cache();
+  TemporaryFolder folder = store.make_work_folder(label);
+  std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;
+  // The translator gives line numbers when the SPIR-V has them.
+  const bool has_lines = translation.source.find("\n#line ") != std::string::npos;
+  const std::string problem = compile_kernel(compiler(label), folder.path(), has_lines);
+  if (!problem.empty()) {
+    const std::filesystem::path kept = store.keep_failure(std::move(folder), key);
+    throw rhi::Error(rhi::ErrorCode::shader_compilation, label,
+                     fmt::format("the C++ compiler {} failed on the translated shader: {} (see {}/compiler.log and "
+                                 "kernel.cpp)",
+                                 compiler(label).path.string(), problem, kept.string()));
+  }
+  KernelLibraryHandle library = store.add(key, folder.path() / "kernel.so", label);
+  const std::chrono::duration<double, std::milli> duration = std::chrono::steady_clock::now() - start;
+  if (on_message_)
+    on_message_({.severity = rhi::Severity::info,
+                 .source = "cpu kernel cache",
+                 .text = fmt::format("{}: compiled in {:.0f} ms", label, duration.count())});
+  return library;
+}
+
+const KernelCompiler& KernelStore::compiler(const std::string& label) {
+  const std::lock_guard lock(mutex_);
+  if (!compiler_) compiler_ = find_kernel_compiler(label);
+  return *compiler_;
+}
+
+KernelCache& KernelStore::cache() {
+  const std::lock_guard lock(mutex_);
+  if (!cache_) cache_.emplace(cache_folder_, on_message_);
+  return *cache_;
+}
+
+std::shared_ptr<KernelStore::Entry> KernelStore::entry(const ContentHash& key) {
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<Entry>& known = entries_[key];
+  if (known == nullptr) known = std::make_shared<Entry>();
+  return known;
+}
+
+}  // namespace tandem::cpu

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "rhi/compute_pipeline.hpp"
+#include "rhi/message.hpp"
+#include "rhi_cpu/cache/kernel_cache.hpp"
+#include "rhi_cpu/cache/kernel_compiler.hpp"
+#include "rhi_cpu/cache/kernel_library.hpp"
+#include "rhi_cpu/cache/precompiled_kernel.hpp"
+
+namespace tandem::cpu {
+
+/// Native code that runs a shader.
+struct Kernel {
+  const kernel::KernelInfo* info = nullptr;
+  KernelLibraryHandle library;  ///< keeps the code loaded; nothing for a kernel that is a part of the program
+};
+
+/// Where native code comes from: the kernels built into the program, else those loaded already, else the cache on
+/// disk, else the translator and the system's compiler. Thread-safe; a shader that several threads ask for at once is
+/// compiled once.
+class KernelStore {
+ public:
+  KernelStore(std::vector<PrecompiledKernel> precompiled, std::filesystem::path cache_folder,
+              rhi::MessageCallback on_message);
+
+  /// Throws Error(unsupported) for SPIR-V that cannot be translated, Error(shader_compilation) when there is no
+  /// compiler or it fails, Error(io) when the cache fails.
+  /// @param values specialisation; constants that are not named have their defaults
+  Kernel kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> values,
+                const std::string& label);
+
+ private:
+  /// What is known of one key. `mutex` is held while its library is made.
+  struct Entry {
+    std::mutex mutex;
+    std::weak_ptr<const KernelLibrary> library;
+  };
+
+  const KernelCompiler& compiler(const std::string& label);
+  KernelCache& cache();
+  std::shared_ptr<Entry> entry(const ContentHash& key);
+  KernelLibraryHandle compile(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> values,
+                              const ContentHash& key, const std::string& label);
+
+  std::vector<PrecompiledKernel> precompiled_;
+  std::filesystem::path cache_folder_;
+  rhi::MessageCallback on_message_;
+  std::mutex mutex_;  ///< of what follows
+  std::optional<KernelCompiler> compiler_;
+  std::optional<KernelCache> cache_;  ///< opened when the first shader needs it
+  std::map<ContentHash, std::shared_ptr<Entry>> entries_;
+};
+
+}  // namespace tandem::cpu

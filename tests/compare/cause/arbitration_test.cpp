@@ -1,0 +1,152 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include <glm/geometric.hpp>
+
+#include "compare/cause/arbitration.hpp"
+
+namespace {
+
+using namespace tandem;
+using compare::Dispute;
+using compare::Ruling;
+using pathtracer::RayKind;
+using pathtracer::TracedRay;
+
+/// Right triangles with legs of length 2 in planes z = const, which rays along +z meet.
+pathtracer::Scene plates(const std::vector<float>& heights) {
+  pathtracer::Scene scene;
+  for (const float z : heights) {
+    const auto first = static_cast<std::uint32_t>(scene.positions.size());
+    for (const glm::vec3& corner : {glm::vec3(0, 0, z), glm::vec3(2, 0, z), glm::vec3(0, 2, z)})
+      scene.positions.push_back(corner);
+    scene.triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = 0});
+  }
+  return scene;
+}
+
+/// Every triangle and sphere, in double precision: what the exact device stands for here.
+std::vector<std::uint32_t> trace_exactly(const pathtracer::Scene& scene, std::span<const TracedRay> rays) {
+  std::vector<std::uint32_t> answers;
+  for (const TracedRay& ray : rays) {
+    double nearest = ray.t_max;
+    std::uint32_t triangle = pathtracer::no_triangle;
+    for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
+      const auto corner = [&](int k) { return glm::dvec3(scene.positions[scene.triangles[i].vertices[k]]); };
+      const glm::dvec3 origin(ray.origin), direction(ray.direction);
+      const glm::dvec3 normal = glm::cross(corner(1) - corner(0), corner(2) - corner(0));
+      const double t = glm::dot(corner(0) - origin, normal) / glm::dot(direction, normal);
+      const glm::dvec3 p = origin + t * direction;
+      bool inside = t > 0 && t < nearest;
+      for (int k = 0; k < 3; ++k)
+        inside = inside && glm::dot(glm::cross(corner((k + 1) % 3) - corner(k), p - corner(k)), normal) >= 0;
+      if (!inside) continue;
+      nearest = t;
+      triangle = i;
+    }
+    for (std::uint32_t i = 0; i < scene.spheres.size(); ++i) {
+      const glm::dvec3 from_centre = glm::dvec3(ray.origin) - glm::dvec3(scene.spheres[i].centre);
+      const glm::dvec3 direction(ray.direction);
+      const double a = glm::dot(direction, direction), b = glm::dot(from_centre, direction);
+      const double radius = scene.spheres[i].radius;
+      const double discriminant = b * b - a * (glm::dot(from_centre, from_centre) - radius * radius);
+      if (discriminant < 0) continue;
+      for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a})
+        if (t > 0 && t < nearest) {
+          nearest = t;
+          triangle = static_cast<std::uint32_t>(scene.triangles.size()) + i;
+        }
+    }
+    answers.push_back(ray.kind == RayKind::closest ? triangle : (triangle != pathtracer::no_triangle ? 1u : 0u));
+  }
+  return answers;
+}
+
+TracedRay upwards(float x, float y, RayKind kind = RayKind::closest) {
+  return {.origin = {x, y, 0}, .t_max = kind == RayKind::closest ? 1e30f : 4.0f, .direction = {0, 0, 1}, .kind = kind};
+}
+
+compare::Judgement judge(const pathtracer::Scene& scene, const TracedRay& ray, std::uint32_t a, std::uint32_t b) {
+  const Dispute dispute{.ray = ray, .answer_a = a, .answer_b = b};
+  return compare::arbitrate({&dispute, 1}, scene,
+                            [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); })[0];
+}
+
+constexpr std::uint32_t none = pathtracer::no_triangle;
+
+TEST_CASE("well inside a triangle the device that sees it is right") {
+  const pathtracer::Scene scene = plates({1, 3});
+  const compare::Judgement judgement = judge(scene, upwards(0.5f, 0.5f), 0, 1);
+  CHECK(judgement.ruling == Ruling::a_right);
+  CHECK(judgement.exact_answer == 0);
+  CHECK(judge(scene, upwards(0.5f, 0.5f), none, 0).ruling == Ruling::b_right);
+  CHECK(judge(scene, upwards(0.5f, 0.5f), none, 1).ruling == Ruling::both_wrong);
+}
+
+TEST_CASE("a sphere is right where the ray meets it, and a tie where it is all but touched") {
+  pathtracer::Scene scene = plates({1, 3});
+  scene.spheres = {{.centre = {0.5f, 0.5f, 2}, .radius = 0.25f}, {.centre = {1.5f, 1.5f, 3}, .radius = 0.25f}};
+  // Above the first plate; the second sphere lies beside both.
+  TracedRay ray = upwards(0.5f, 0.5f);
+  ray.origin.z = 1.25f;
+  CHECK(judge(scene, ray, 2, 1).ruling == Ruling::a_right);
+  CHECK(judge(scene, ray, 1, 2).ruling == Ruling::b_right);
+  CHECK(judge(scene, ray, 3, none).ruling == Ruling::both_wrong);
+  CHECK(judge(scene, ray, 2, 1).exact_answer == 2);
+  CHECK(judge(scene, upwards(0.5f, 0.5f), 2, 0).ruling == Ruling::b_right);
+  CHECK(judge(scene, upwards(1.5f, 1.5f), 3, none).ruling == Ruling::a_right);
+  // A rim that the ray all but touches, from inside and from outside.
+  CHECK(judge(scene, upwards(1.75f - 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(1.75f + 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(1.75f + 1e-3f, 1.5f), none, 3).ruling == Ruling::a_right);
+  pathtracer::Scene only;
+  only.spheres = {{.centre = {0, 0, 5}, .radius = 1}};
+  CHECK(judge(only, upwards(0, 0), 0, none).ruling == Ruling::a_right);
+}
+
+TEST_CASE("at the border of a triangle, what lies behind it is as right") {
+  const pathtracer::Scene scene = plates({1, 3});
+  // 2e-7 from the leg x = 0: two units in the last place of a coordinate of 2.
+  CHECK(judge(scene, upwards(2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(-2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
+  // A thousandth is no rounding.
+  CHECK(judge(scene, upwards(1e-3f, 0.5f), 0, none).ruling == Ruling::a_right);
+  CHECK(judge(scene, upwards(-1e-3f, 0.5f), 0, none).ruling == Ruling::b_right);
+}
+
+TEST_CASE("of two triangles in one place either is right, of two that lie apart only the nearer") {
+  const float next = std::nextafter(1.0f, 2.0f);
+  CHECK(judge(plates({1, 1}), upwards(0.5f, 0.5f), 0, 1).ruling == Ruling::tie);
+  CHECK(judge(plates({1, next}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(judge(plates({1, 1.001f}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::b_right);
+}
+
+TEST_CASE("a triangle seen edge-on may be taken for hit by a ray that touches it, and by no other") {
+  pathtracer::Scene scene = plates({3});
+  const auto first = static_cast<std::uint32_t>(scene.positions.size());
+  for (const glm::vec3& corner : {glm::vec3(0.5f, 0.2f, 1), glm::vec3(0.5f, 0.2f, 2), glm::vec3(0.5f, 0.9f, 1.5f)})
+    scene.positions.push_back(corner);  // in the plane x = 0.5, in front of the plate
+  scene.triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = 0});
+  CHECK(judge(scene, upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(0.5f + 1e-6f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(judge(scene, upwards(0.501f, 0.5f), 1, 0).ruling == Ruling::b_right);
+}
+
+TEST_CASE("shadow rays are judged by whether anything is in the way") {
+  const pathtracer::Scene scene = plates({1});
+  CHECK(judge(scene, upwards(0.5f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::b_right);
+  CHECK(judge(scene, upwards(5, 5, RayKind::occlusion), 0, 1).ruling == Ruling::a_right);
+  CHECK(judge(scene, upwards(-2e-7f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::tie);
+  // The plate lies at the very end of the ray.
+  TracedRay ray = upwards(0.5f, 0.5f, RayKind::occlusion);
+  ray.t_max = std::nextafter(1.0f, 2.0f);
+  CHECK(judge(scene, ray, 0, 1).ruling == Ruling::tie);
+  ray.t_max = 1.001f;
+  CHECK(judge(scene, ray, 0, 1).ruling == Ruling::b_right);
+}
+
+}  // namespace

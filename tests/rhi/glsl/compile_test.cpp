@@ -1,0 +1,84 @@
+#include "rhi/glsl/compile.hpp"
+
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "rhi/error.hpp"
+
+using namespace tandem;
+
+namespace {
+
+const char* const valid = R"(#version 460
+layout(local_size_x = 4, local_size_y = 2) in;
+layout(set = 1, binding = 3, std430) readonly buffer Input { uint value[]; } inputs[2];
+layout(set = 0, binding = 7, std430) buffer Output { uint value[]; } result;
+layout(push_constant) uniform Push { vec3 a; uint b; } push;
+layout(constant_id = 5) const uint factor = 9;
+void main() { result.value[gl_GlobalInvocationID.x] = inputs[push.b & 1].value[0] * factor + uint(push.a.x); }
+)";
+
+}  // namespace
+
+TEST_CASE("a compute shader compiles and reflects as it was written") {
+  const auto reflection = rhi::reflect(glsl::compile(valid, rhi::ShaderStage::compute, "valid"), "valid");
+  CHECK(reflection.stage == rhi::ShaderStage::compute);
+  CHECK(reflection.entry_point == "main");
+  CHECK(reflection.workgroup_size == std::array<std::uint32_t, 3>{4, 2, 1});
+  CHECK(reflection.push_constant_size == 16);
+  REQUIRE(reflection.bindings.size() == 2);
+  CHECK(reflection.bindings[0].set == 0);
+  CHECK(reflection.bindings[0].binding == 7);
+  CHECK(reflection.bindings[0].writable);
+  CHECK(reflection.bindings[1].count == 2);
+  CHECK_FALSE(reflection.bindings[1].writable);
+  REQUIRE(reflection.specialization_constants.size() == 1);
+  CHECK(reflection.specialization_constants[0].id == 5);
+  CHECK(reflection.specialization_constants[0].default_value == 9);
+}
+
+TEST_CASE("a workgroup size given by specialisation constants reflects with its defaults") {
+  const char* const source = R"(#version 460
+layout(local_size_x_id = 0, local_size_y = 2) in;
+layout(set = 0, binding = 0) buffer Output { uint value[]; };
+void main() { value[gl_LocalInvocationIndex] = 1; })";
+  const auto reflection = rhi::reflect(glsl::compile(source, rhi::ShaderStage::compute, "sized"), "sized");
+  CHECK(reflection.workgroup_size == std::array<std::uint32_t, 3>{1, 2, 1});
+}
+
+TEST_CASE("an error names the shader and the line") {
+  try {
+    glsl::compile("#version 460\nvoid main() { undeclared = 1; }", rhi::ShaderStage::compute, "broken.comp");
+    FAIL("it compiled");
+  } catch (const rhi::Error& error) {
+    CHECK(error.code() == rhi::ErrorCode::shader_compilation);
+    CHECK(std::string(error.what()).find("broken.comp:2") != std::string::npos);
+    CHECK(std::string(error.what()).find("undeclared") != std::string::npos);
+  }
+}
+
+TEST_CASE("words that are no SPIR-V are an error that names the shader") {
+  const std::vector<std::uint32_t> words(16, 0x12345678);
+  CHECK_THROWS_WITH_AS(rhi::reflect(words, "noise"), doctest::Contains("noise"), rhi::Error);
+  std::vector<std::uint32_t> truncated = glsl::compile(valid, rhi::ShaderStage::compute, "valid");
+  truncated.resize(truncated.size() / 2);
+  CHECK_THROWS_AS(rhi::reflect(truncated, "truncated"), rhi::Error);
+}
+
+TEST_CASE("includes are found in the folders of the options") {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "tandem_glsl_include_test";
+  std::filesystem::create_directories(folder / "nested");
+  std::ofstream(folder / "nested" / "a.glsl") << "#include \"b.glsl\"\n";
+  std::ofstream(folder / "nested" / "b.glsl") << "uint answer() { return 42u; }\n";
+  const std::string source =
+      "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"nested/a.glsl\"\n"
+      "layout(set = 0, binding = 0) buffer Output { uint value[]; };\nvoid main() { value[0] = answer(); }\n";
+  glsl::CompileOptions options;
+  options.include_directories = {folder};
+  CHECK_FALSE(glsl::compile(source, rhi::ShaderStage::compute, "includes", options).empty());
+  CHECK_THROWS_AS(glsl::compile(source, rhi::ShaderStage::compute, "includes"), rhi::Error);
+  std::filesystem::remove_all(folder);
+}

@@ -1,0 +1,61 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <string>
+
+#include "devices/devices.hpp"
+#include "tools/command.hpp"
+#include "tools/output/messages.hpp"
+#include "tools/report/device_json.hpp"
+
+namespace tandem::tools {
+namespace {
+
+std::string capability_names(const rhi::Capabilities& capabilities) {
+  std::string names;
+  const auto add = [&](bool present, const char* name) {
+    if (present) names += (names.empty() ? "" : ", ") + std::string(name);
+  };
+  add(capabilities.ray_query, "ray query");
+  add(capabilities.ray_tracing_pipeline, "ray tracing pipeline");
+  add(capabilities.position_fetch, "position fetch");
+  add(capabilities.trace_rays_indirect, "indirect trace");
+  add(capabilities.primitive_culling, "primitive culling");
+  add(capabilities.null_acceleration_structure, "null structures");
+  add(capabilities.buffer_references, "buffer references");
+  add(capabilities.non_uniform_indexing, "non-uniform indexing");
+  add(capabilities.scalar_block_layout, "scalar layout");
+  add(capabilities.shader_int64, "int64");
+  add(capabilities.shader_float64, "float64");
+  add(capabilities.timestamps, "timestamps");
+  return names.empty() ? "none" : names;
+}
+
+int list_devices(bool as_json) {
+  const std::vector<rhi::DeviceInfo> devices = enumerate_devices(print_message);
+  if (as_json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const rhi::DeviceInfo& device : devices) json.push_back(to_json_in_full(device));
+    fmt::print("{}", json_text(json));
+    return exit_code::success;
+  }
+  for (const rhi::DeviceInfo& device : devices) {
+    fmt::print("{}\n", device.name);
+    fmt::print("  hardware      {} ({})\n", device.description, kind_name(device.kind));
+    fmt::print("  driver        {}{}{}\n", device.driver, device.api.empty() ? "" : ", ", device.api);
+    fmt::print("  capabilities  {}\n", capability_names(device.capabilities));
+  }
+  return exit_code::success;
+}
+
+}  // namespace
+
+void add_devices_command(CLI::App& app, Action& action) {
+  CLI::App* const command = app.add_subcommand("devices", "List the devices that can render");
+  const auto as_json = std::make_shared<bool>(false);
+  command->add_flag("--json", *as_json, "Print JSON, with all capabilities and limits");
+  command->footer("The names are what --device, --a and --b take; 'vulkan' alone is the first Vulkan device.");
+  command->callback([&action, as_json] { action = [as_json] { return list_devices(*as_json); }; });
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "tools/command.hpp"
+#include "tools/explanation.hpp"
+#include "tools/options/option_values.hpp"
+#include "tools/options/render_options.hpp"
+#include "tools/output/output_file.hpp"
+#include "tools/report/device_json.hpp"
+#include "tools/report/explanation_report.hpp"
+
+namespace tandem::tools {
+namespace {
+
+struct Options {
+  RenderOptions render;
+  ExplanationOptions explanation;
+  bool all_events = false;
+  std::filesystem::path json;  ///< empty: none
+};
+
+int run(const Options& options) {
+  if (!options.json.empty()) check_output_path(options.json);
+  const Explanation explanation = explain(options.explanation, options.render);
+  fmt::print("{}", table(explanation, {.all_events = options.all_events, .colors = isatty(STDOUT_FILENO) != 0}));
+  if (!options.json.empty()) write_text(options.json, json_text(to_json(explanation)));
+  return explanation.mismatches() == 0 ? exit_code::success : exit_code::differ;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, Action& action) {
+  CLI::App* const command =
+      app.add_subcommand("explain", "Say where the paths of one pixel part on two devices, and why");
+  const auto options = std::make_shared<Options>();
+  add_render_options(*command, options->render);
+  ExplanationOptions& explanation = options->explanation;
+  add_pixel(*command, "--pixel", explanation.pixel, "The pixel, from 0,0 in the upper left corner on")->required();
+  add_whole_number(*command, "--sample", explanation.sample, 0, 0xffffffffU,
+                   "One of its samples [all are compared, and the first that differs is shown]");
+  command->add_option("--a", explanation.a, "The first device, the reference")->type_name("D1")->capture_default_str();
+  command->add_option("--b", explanation.b, "The second device")->type_name("D2")->capture_default_str();
+  command->add_option("--arbiter", explanation.arbiter, "The device that says which answer to a ray is right")
+      ->type_name("D3")
+      ->capture_default_str();
+  add_trace_form(*command, "--trace-a", explanation.trace_a, "As --trace, for the first device only");
+  add_trace_form(*command, "--trace-b", explanation.trace_b, "As --trace, for the second device only");
+  command->add_flag("--all-events", options->all_events,
+                    "Show every event with every field, not only those where the paths part");
+  command->add_flag_function(
+      "--probe,!--no-probe", [options](std::int64_t count) { options->explanation.probe = count > 0; },
+      "Ask both devices the rays of the path in other ways too (masks, culling, instances, ...) [if the paths are the "
+      "same]");
+  command->add_option("--json", options->json, "Write all of it as JSON")->type_name("FILE");
+  command->footer(
+      "Exit code: 0 nothing but rounding and ties, 1 a mismatch: one of the devices is wrong, 2 error.\n"
+      "Examples:\n"
+      "  tandem explain scenes/cornell_box.obj --pixel 248,109 --a cpu --b vulkan\n"
+      "  tandem explain scenes/foliage.obj --pixel 90,17 --sample 3 --a cpu --b vulkan --all-events --json path.json");
+  command->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace tandem::tools

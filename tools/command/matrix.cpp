@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "tools/command.hpp"
+#include "tools/comparison.hpp"
+#include "tools/output/messages.hpp"
+#include "tools/output/output_file.hpp"
+#include "tools/rendering.hpp"
+#include "tools/report/device_json.hpp"
+#include "tools/report/matrix_report.hpp"
+
+namespace tandem::tools {
+namespace {
+
+struct Options {
+  RenderOptions render;
+  ComparisonOptions comparison;  ///< its thresholds
+  std::vector<std::string> devices;
+  std::filesystem::path json;  ///< empty: none
+};
+
+int compare_matrix(const Options& options) {
+  if (options.devices.size() < 3)
+    throw Error("--device: a vote takes at least three devices; 'tandem diff' compares two");
+  const RenderJob job = load_job(options.render);
+  const compare::Thresholds thresholds = thresholds_for(options.comparison, options.render);
+  if (thresholds.tier == compare::Tier::statistical)
+    throw Error(fmt::format("{}: the tier statistical takes 'tandem diff', since a matrix is of the same samples",
+                            options.render.scene.string()));
+  if (!options.json.empty()) check_output_path(options.json);
+  std::vector<rhi::DeviceHandle> devices;
+  // All before the first rendering, so that what one of them refuses does not cost any.
+  std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
+  for (const std::string& name : options.devices) {
+    devices.push_back(open_device(name, options.render));
+    renderers.push_back(
+        std::make_unique<pathtracer::Renderer>(devices.back(), job.scene, job.settings, options.render.trace));
+  }
+  std::vector<Rendering> renderings;
+  for (std::size_t index = 0; index < devices.size(); ++index)
+    renderings.push_back(render(*renderers[index], devices[index]->info(), job.samples));
+  print_warnings(renderings.front().warnings);
+  const MatrixReport report = compare_all(summary(options.render, job), thresholds, std::move(renderings));
+  fmt::print("{}", table(report));
+  if (!options.json.empty()) {
+    const OutputFile file{options.json,
+                          [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }};
+    write_or_rescue({&file, 1});
+  }
+  return report.agree() ? exit_code::success : exit_code::differ;
+}
+
+}  // namespace
+
+void add_matrix_command(CLI::App& app, Action& action) {
+  CLI::App* const command = app.add_subcommand(
+      "matrix", "Render a scene on three or more devices, compare each two of them, and let them vote");
+  const auto options = std::make_shared<Options>();
+  add_render_options(*command, options->render);
+  command->add_option("--device", options->devices, "The devices, three or more, after the scene")
+      ->required()
+      ->type_name("A B C...");
+  command->add_option("--json", options->json, "Write all numbers as JSON")->type_name("FILE");
+  add_threshold_options(*command, options->comparison.thresholds);
+  command->footer(
+      "A device is outvoted at a pixel where more than half of all have the same bits, or at least values within 1e-3\n"
+      "relative, and it has not.\n"
+      "Exit code: 0 every pair agrees, 1 one differs, 2 error.\n"
+      "Example:\n"
+      "  tandem matrix scenes/cornell_box.obj --size 64x64 --device cpu cpu-exact vulkan");
+  command->callback([&action, options] { action = [options] { return compare_matrix(*options); }; });
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,73 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "pathtracer/image/image_io.hpp"
+#include "tools/command.hpp"
+#include "tools/options/render_options.hpp"
+#include "tools/output/messages.hpp"
+#include "tools/output/output_file.hpp"
+#include "tools/rendering.hpp"
+
+namespace tandem::tools {
+namespace {
+
+struct Options {
+  RenderOptions render;
+  std::string device = "cpu";
+  std::filesystem::path output;
+  pathtracer::Tone tone;
+  bool layers = false;  ///< what pixels show first, beside the picture
+};
+
+int render_image(const Options& options) {
+  pathtracer::check_image_path(options.output);
+  if (options.layers && options.output.extension() != ".exr")
+    throw Error(fmt::format("--layers: '{}' is no .exr, which alone has layers", options.output.string()));
+  const RenderJob job = load_job(options.render);
+  const rhi::DeviceHandle device = open_device(options.device, options.render);
+  pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
+  const Rendering rendering = render(renderer, device->info(), job.samples);
+  print_warnings(rendering.warnings);
+  std::vector<pathtracer::ImageChannel> layers;
+  if (options.layers) layers = renderer.first_hits(job.samples);
+  const OutputFile file{options.output, [&](const std::filesystem::path& path) {
+                          pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone, layers);
+                        }};
+  write_or_rescue({&file, 1});
+  fmt::print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
+             job.settings.width, job.settings.height, job.samples, rendering.device.name, rendering.device.description,
+             pathtracer::name(rendering.trace), rendering.milliseconds,
+             per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
+  return exit_code::success;
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, Action& action) {
+  CLI::App* const command = app.add_subcommand("render", "Render a scene on one device into an image file");
+  const auto options = std::make_shared<Options>();
+  add_render_options(*command, options->render);
+  command->add_option("-o,--output", options->output, "Image: .exr (linear, 32-bit float) or .png (8 bits)")
+      ->required()
+      ->type_name("FILE");
+  command->add_flag(
+      "--layers", options->layers,
+      "Add to the .exr what pixels show first: albedo, normal, depth, coverage, ids of primitive and material");
+  add_tone_options(*command, options->tone);
+  command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
+      ->type_name("D")
+      ->capture_default_str();
+  command->footer(
+      "Examples:\n"
+      "  tandem render scenes/cornell_box.obj -o box.png\n"
+      "  tandem render scenes/cornell_spheres.obj --device vulkan --size 1280x720 --spp 256 -o spheres.exr\n"
+      "  tandem render model.obj --camera-position 0,1,5 --camera-target 0,1,0 --fov 35 -o model.png");
+  command->callback([&action, options] { action = [options] { return render_image(*options); }; });
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "compare/study/sampling_study.hpp"
+#include "compare/study/study_scenes.hpp"
+#include "tools/command.hpp"
+#include "tools/options/option_values.hpp"
+#include "tools/output/interruption.hpp"
+#include "tools/output/output_file.hpp"
+#include "tools/output/progress_bar.hpp"
+#include "tools/rendering.hpp"
+#include "tools/report/device_json.hpp"
+#include "tools/report/study_report.hpp"
+
+namespace tandem::tools {
+namespace {
+
+struct Options {
+  std::string device = "cpu";
+  std::uint32_t threads = 0;
+  study::StudySettings settings;
+  std::filesystem::path json;      ///< empty: none
+  std::filesystem::path markdown;  ///< likewise
+};
+
+int study_sampling(const Options& options) {
+  for (const std::filesystem::path& path : {options.json, options.markdown})
+    if (!path.empty()) check_output_path(path);
+  RenderOptions device_options;
+  device_options.threads = options.threads;
+  const rhi::DeviceHandle device = open_device(options.device, device_options);
+  StudyReport report{.device = device->info(), .settings = options.settings, .scenes = {}};
+  struct Subject {
+    pathtracer::Scene scene;
+    bool compares_thesis;
+  };
+  for (const Subject& subject : {Subject{study::weekend_box(), true}, Subject{study::veach_plates(), false},
+                                 Subject{study::lamp_over_floor(), false}}) {
+    ProgressBar bar(subject.scene.name);
+    std::optional<study::SceneResult> result = study::study_scene(
+        device, subject.scene, study::methods(), options.settings, subject.compares_thesis, [&](double fraction) {
+          bar.show(fraction);
+          return !interrupted();
+        });
+    if (!result) throw Interrupted();
+    report.scenes.push_back(std::move(*result));
+  }
+  fmt::print("{}", markdown(report));
+  std::vector<OutputFile> files;
+  if (!options.json.empty())
+    files.push_back(
+        {options.json, [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }});
+  if (!options.markdown.empty())
+    files.push_back({options.markdown, [&](const std::filesystem::path& path) { write_text(path, markdown(report)); }});
+  write_or_rescue(files);
+  return exit_code::success;
+}
+
+}  // namespace
+
+void add_study_command(CLI::App& app, Action& action) {
+  CLI::App* const group = app.add_subcommand("study", "Measure what the methods of the path tracer are worth");
+  group->require_subcommand(1);
+  CLI::App* const command = group->add_subcommand(
+      "sampling", "Error, variance, time and order of convergence of every sampler and option of the integrator");
+  const auto options = std::make_shared<Options>();
+  command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
+      ->type_name("D")
+      ->capture_default_str();
+  add_whole_number(*command, "--threads", options->threads, 0, 4096, "Threads of the CPU device; 0: all");
+  add_whole_number(*command, "--size", options->settings.size, 1, 4096, "Pixels of the square pictures, each way");
+  add_whole_number(*command, "--reference-spp", options->settings.reference_samples, 1, 1u << 24,
+                   "Samples per pixel of the picture that errors are measured against");
+  command->add_option("--json", options->json, "Write all measurements as JSON")->type_name("FILE");
+  command->add_option("--markdown", options->markdown, "Write the tables as Markdown")->type_name("FILE");
+  command->footer(
+      "The scenes are built in: the Cornell box of Ray Tracing in One Weekend's series, Veach's plates, and a lamp "
+      "over\n"
+      "a floor, which is smooth. RMSE is over pixels and channels; the variance is that of one sample; the efficiency "
+      "is\n"
+      "1 / (V T) with the seconds of the device, over that of the first method.\n"
+      "Example:\n"
+      "  tandem study sampling --device cpu --markdown sampling.md");
+  command->callback([&action, options] { action = [options] { return study_sampling(*options); }; });
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,33 @@
+#include "tools/output/progress_bar.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace tandem::tools {
+
+ProgressBar::ProgressBar(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
+
+ProgressBar::~ProgressBar() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void ProgressBar::show(double fraction) {
+  using namespace std::chrono_literals;
+  constexpr int cells = 40;
+  const Clock::time_point now = Clock::now();
+  if (!terminal_ || now - started_ < 1s || (drawn_ && now - last_drawn_ < 100ms)) return;
+  const double done = std::clamp(fraction, 0.0, 1.0);
+  const int filled = static_cast<int>(done * cells);
+  const double elapsed = std::chrono::duration<double>(now - started_).count();
+  const std::string left = done > 0.0 ? fmt::format("{:.0f} s left", elapsed / done - elapsed) : std::string();
+  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} % {}\033[K", label_, "", filled, "", cells - filled, 100.0 * done,
+             left);
+  std::fflush(stderr);
+  drawn_ = true;
+  last_drawn_ = now;
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,59 @@
+#include "tools/report/device_json.hpp"
+
+namespace tandem::tools {
+
+const char* kind_name(rhi::DeviceKind kind) {
+  switch (kind) {
+    case rhi::DeviceKind::discrete_gpu:
+      return "discrete GPU";
+    case rhi::DeviceKind::integrated_gpu:
+      return "integrated GPU";
+    case rhi::DeviceKind::virtual_gpu:
+      return "virtual GPU";
+    case rhi::DeviceKind::cpu:
+      return "CPU";
+  }
+  return "unknown";
+}
+
+nlohmann::ordered_json to_json(const rhi::DeviceInfo& device) {
+  return {{"name", device.name},     {"backend", device.backend}, {"description", device.description},
+          {"driver", device.driver}, {"api", device.api},         {"kind", kind_name(device.kind)}};
+}
+
+nlohmann::ordered_json to_json_in_full(const rhi::DeviceInfo& device) {
+  nlohmann::ordered_json json = to_json(device);
+  const rhi::Capabilities& capabilities = device.capabilities;
+  json["capabilities"] = {{"ray_query", capabilities.ray_query},
+                          {"ray_tracing_pipeline", capabilities.ray_tracing_pipeline},
+                          {"position_fetch", capabilities.position_fetch},
+                          {"trace_rays_indirect", capabilities.trace_rays_indirect},
+                          {"primitive_culling", capabilities.primitive_culling},
+                          {"null_acceleration_structure", capabilities.null_acceleration_structure},
+                          {"buffer_references", capabilities.buffer_references},
+                          {"non_uniform_indexing", capabilities.non_uniform_indexing},
+                          {"scalar_block_layout", capabilities.scalar_block_layout},
+                          {"shader_int64", capabilities.shader_int64},
+                          {"shader_float64", capabilities.shader_float64},
+                          {"timestamps", capabilities.timestamps}};
+  const rhi::Limits& limits = device.limits;
+  json["limits"] = {{"max_push_constant_size", limits.max_push_constant_size},
+                    {"max_storage_buffer_range", limits.max_storage_buffer_range},
+                    {"max_uniform_buffer_range", limits.max_uniform_buffer_range},
+                    {"storage_buffer_offset_alignment", limits.storage_buffer_offset_alignment},
+                    {"uniform_buffer_offset_alignment", limits.uniform_buffer_offset_alignment},
+                    {"max_workgroup_size", limits.max_workgroup_size},
+                    {"max_workgroup_invocations", limits.max_workgroup_invocations},
+                    {"max_workgroup_count", limits.max_workgroup_count},
+                    {"max_bind_groups", limits.max_bind_groups},
+                    {"max_geometry_count", limits.max_geometry_count},
+                    {"max_primitive_count", limits.max_primitive_count},
+                    {"max_instance_count", limits.max_instance_count}};
+  return json;
+}
+
+std::string json_text(const nlohmann::ordered_json& value) {
+  return value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace tandem::tools

@@ -1,0 +1,164 @@
+#include "tools/suite/suite_page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "compare/report/page_sources.hpp"
+#include "tools/output/xml_text.hpp"
+
+namespace tandem::tools {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Beside that of the pages of single comparisons.
+constexpr std::string_view suite_style = R"(
+body { max-width: none; }
+td.cell { min-width: 20rem; max-width: 26rem; padding: .6rem 1rem .6rem 0; }
+tbody th { padding-top: .6rem; }
+.pictures { display: flex; gap: .4rem; float: left; margin: 0 .8rem .2rem 0; }
+.pictures img { width: 64px; height: 64px; object-fit: contain; background: #000; image-rendering: pixelated; }
+.agree { color: var(--good); } .differ, .failed { color: var(--bad); }
+.reasons { clear: both; margin: .2rem 0 0; overflow-wrap: anywhere; }
+)";
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t index = 0; index < bytes.size(); index += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - index);
+    std::uint32_t group = 0;
+    for (std::size_t each = 0; each < 3; ++each)
+      group = group << 8 | (each < count ? static_cast<unsigned char>(bytes[index + each]) : 0U);
+    for (std::size_t digit = 0; digit < 4; ++digit)
+      text += digit <= count ? digits[group >> (18 - 6 * digit) & 63U] : '=';
+  }
+  return text;
+}
+
+std::string image(const std::filesystem::path& path, const std::string& words) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  return fmt::format("<img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", xml_text(words), xml_text(words),
+                     base64(bytes));
+}
+
+std::string string(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
+
+/// Smaller is worse.
+std::tuple<int, double> rank(const SuiteResult& result) {
+  if (result.failed()) return {0, 0.0};
+  return {result.agrees() ? 2 : 1, result.json.at("report").at("bit_equal").get<double>()};
+}
+
+/// "3 rounding, 1 edge or vertex tie": pixels by the class of their difference, where they were classified.
+std::string class_counts(const Json& report) {
+  std::vector<std::string> counts;
+  if (report.contains("classification"))
+    for (const auto& [name, count] : report.at("classification").at("pixel_classes").items())
+      if (count.get<std::uint64_t>() > 0) counts.push_back(fmt::format("{} {}", count.get<std::uint64_t>(), name));
+  return fmt::format("{}", fmt::join(counts, ", "));
+}
+
+std::string cell_html(const SuiteResult& result, const std::filesystem::path& folder) {
+  const Json& json = result.json;
+  const std::string state = string(json, "state");
+  std::string html;
+  const auto add = [&]<typename... Arguments>(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    fmt::format_to(std::back_inserter(html), format, std::forward<Arguments>(arguments)...);
+  };
+  if (!result.failed()) {
+    add("<div class=\"pictures\">{}{}</div>", image(folder / string(json, "picture"), "a: " + string(json, "a")),
+        image(folder / string(json, "difference"), "difference"));
+  }
+  add("<strong class=\"{}\">{}</strong>", state, state);
+  if (!result.failed()) {
+    const Json& report = json.at("report");
+    add(", {:.4f} % bit-equal", 100 * report.at("bit_equal").get<double>());
+    const std::string classes = class_counts(report);
+    if (!classes.empty()) add("<br>{}", xml_text(classes));
+    add("<br><span class=\"hint\">{:.0f} ms, {:.0f} ms</span>", report.at("ms_a").get<double>(),
+        report.at("ms_b").get<double>());
+  }
+  if (json.contains("page")) add(" <a href=\"{}\">details</a>", xml_text(string(json, "page")));
+  if (!json.at("reasons").empty()) {
+    html += "<ul class=\"reasons\">";
+    for (const std::string reason : json.at("reasons")) add("<li>{}</li>", xml_text(reason));
+    html += "</ul>";
+  }
+  return html;
+}
+
+/// Each device that took part, once, with what it is.
+std::set<std::string> device_sentences(const std::vector<SuiteResult>& results) {
+  std::set<std::string> sentences;
+  for (const SuiteResult& result : results) {
+    if (result.failed()) continue;
+    for (const char* side : {"device_a", "device_b"}) {
+      const Json& device = result.json.at("report").at(side);
+      sentences.insert(
+          fmt::format("{}: {}, {}", string(device, "name"), string(device, "description"), string(device, "driver")));
+    }
+  }
+  return sentences;
+}
+
+}  // namespace
+
+std::string suite_page(const std::string& title, const std::vector<SuiteResult>& results,
+                       const std::filesystem::path& folder) {
+  using Column = std::tuple<std::string, std::string, std::string>;  // a, b, settings
+  std::vector<Column> columns;
+  std::map<std::string, std::map<Column, const SuiteResult*>> rows;
+  std::vector<std::pair<std::tuple<int, double>, std::string>> order;
+  for (const SuiteResult& result : results) {
+    const Column column = {string(result.json, "a"), string(result.json, "b"), string(result.json, "settings")};
+    if (std::ranges::count(columns, column) == 0) columns.push_back(column);
+    rows[string(result.json, "scene")][column] = &result;
+  }
+  for (const auto& [scene, cells] : rows) {
+    std::tuple<int, double> worst = {3, 0.0};
+    for (const auto& [column, result] : cells) worst = std::min(worst, rank(*result));
+    order.emplace_back(worst, scene);
+  }
+  std::ranges::sort(order);
+
+  const Json totals = to_json(results);
+  std::string html;
+  const auto add = [&]<typename... Arguments>(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+    fmt::format_to(std::back_inserter(html), format, std::forward<Arguments>(arguments)...);
+  };
+  add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+      xml_text(title), compare::page_style(), suite_style);
+  add("<p>{} comparisons: <span class=\"agree\">{} agree</span>, <span class=\"differ\">{} differ</span>, "
+      "<span class=\"failed\">{} failed</span>. The worst scenes come first; times are those of a and of b.</p>\n",
+      results.size(), totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>());
+  for (const std::string& sentence : device_sentences(results)) add("<p class=\"hint\">{}</p>\n", xml_text(sentence));
+  add("<p class=\"hint\">tandem {}</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>scene</th>", TANDEM_VERSION);
+  for (const auto& [a, b, settings] : columns)
+    add("<th>{} against {}<br><span class=\"hint\">{}</span></th>", xml_text(a), xml_text(b), xml_text(settings));
+  html += "</tr></thead>\n<tbody>\n";
+  for (const auto& [worst, scene] : order) {
+    add("<tr><th>{}</th>", xml_text(scene));
+    const std::map<Column, const SuiteResult*>& cells = rows.at(scene);
+    for (const Column& column : columns) {
+      const auto found = cells.find(column);
+      add("<td class=\"cell\">{}</td>", found == cells.end() ? std::string() : cell_html(*found->second, folder));
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody>\n</table></div>\n</body>\n</html>\n";
+}
+
+}  // namespace tandem::tools
