@@ -159,7 +159,7 @@ const uint INTEGRATOR_PATH = 0;
 const uint INTEGRATOR_DIRECT = 1;             // point-light tracing: emission and direct light, behind specular lobes only
 const uint INTEGRATOR_AMBIENT_OCCLUSION = 2;  // the unoccluded fraction of cosine-weighted directions
 
-const uint MIS_NONE = 0;      // a lamp counts by next event estimation only, where that can find it
+const uint MIS_NONE = 0;      // a light counts by next event estimation only, where that can find it
 const uint MIS_BALANCE = 1;
 const uint MIS_POWER = 2;
 
@@ -205,7 +205,7 @@ struct RenderConstants {
   uint mis;                // MIS_*
   uint bsdf_sampling;      // BSDF_SAMPLING_*
   uint roulette;           // 1: Russian roulette, 0: none
-  uint max_diffuse_depth;  // scattering events of a path by lobes of each kind, before the one that meets a lamp
+  uint max_diffuse_depth;  // scattering events of a path by lobes of each kind, before the one that meets a light
   uint max_glossy_depth;
   uint max_specular_depth;
   float clamp_direct;      // largest channel of what light adds that came along at most two segments; 0: no bound

@@ -10,8 +10,8 @@
 namespace tandem::tools {
 
 void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
-  add_trace_form(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
-  add_trace_form(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
+  add_tracing_mode(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
+  add_tracing_mode(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
   add_named(command, "--metrics", options.metrics, compare::metric_set_names(),
             "all: FLIP and a table of regions too, which takes some seconds [basic]");
   command.add_flag("--classify", options.classify,
@@ -54,7 +54,7 @@ ComparedDevices open_devices(const ComparisonOptions& options, const RenderOptio
 Comparison prepare(const ComparisonOptions& options, const RenderOptions& render_options, RenderJob job,
                    ComparedDevices devices) {
   compare::Thresholds thresholds = thresholds_for(options, render_options);
-  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace,
+  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TracingMode>& trace,
                             const pathtracer::ProgramStoreHandle& programs) {
     return pathtracer::Renderer(device, job.scene, job.settings, trace, programs);
   };

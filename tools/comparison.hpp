@@ -9,7 +9,7 @@
 #include "compare/metrics/detailed_metrics.hpp"
 #include "compare/verdict/thresholds.hpp"
 #include "pathtracer/render/renderer.hpp"
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "rhi/device.hpp"
 #include "tools/batches.hpp"
 #include "tools/options/render_options.hpp"
@@ -25,10 +25,10 @@ namespace tandem::tools {
 
 /// What is compared, beside the scene, and how.
 struct ComparisonOptions {
-  std::string a = "cpu";                         ///< the first device, the reference
-  std::string b = "vulkan";                      ///< the second
-  std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of the RenderOptions
-  std::optional<pathtracer::TraceForm> trace_b;
+  std::string a = "cpu";                           ///< the first device, the reference
+  std::string b = "vulkan";                        ///< the second
+  std::optional<pathtracer::TracingMode> trace_a;  ///< none: that of the RenderOptions
+  std::optional<pathtracer::TracingMode> trace_b;
   std::optional<compare::MetricSet> metrics;  ///< none: basic
   compare::Thresholds usual_thresholds;       ///< where neither `thresholds` nor the scene's file says otherwise
   ThresholdOptions thresholds;

@@ -96,8 +96,8 @@ std::uint64_t Explanation::mismatches() const {
   std::uint64_t count = probing ? probing->count(DifferenceClass::mismatch) : 0;
   for (const ExplainedSample& sample : samples) {
     if (!sample.judgement) continue;
-    count += static_cast<std::uint64_t>(
-        std::ranges::count(sample.judgement->partings, DifferenceClass::mismatch, &compare::Parting::difference_class));
+    count += static_cast<std::uint64_t>(std::ranges::count(sample.judgement->divergences, DifferenceClass::mismatch,
+                                                           &compare::Divergence::difference_class));
   }
   return count;
 }
@@ -105,10 +105,10 @@ std::uint64_t Explanation::mismatches() const {
 Explanation explain(const ExplanationOptions& options, const RenderOptions& render_options) {
   const RenderJob job = load_job(render_options);
   check(options, job);
-  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TraceForm>& trace) {
+  const auto renderer = [&](const rhi::DeviceHandle& device, const std::optional<pathtracer::TracingMode>& trace) {
     return pathtracer::Renderer(device, job.scene, job.settings, trace);
   };
-  const auto form = [&](const std::optional<pathtracer::TraceForm>& own) { return own ? own : render_options.trace; };
+  const auto form = [&](const std::optional<pathtracer::TracingMode>& own) { return own ? own : render_options.trace; };
   const rhi::DeviceHandle device_a = open_device(options.a, render_options);
   const rhi::DeviceHandle device_b = open_device(options.b, render_options);
   const rhi::DeviceHandle device_arbiter = open_device(options.arbiter, render_options);

@@ -12,7 +12,7 @@
 #include "compare/path/scene_names.hpp"
 #include "compare/probe/probing.hpp"
 #include "pathtracer/render/path_event.hpp"
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "rhi/device.hpp"
 #include "tools/options/render_options.hpp"
 #include "tools/report/job_report.hpp"
@@ -21,11 +21,11 @@
 namespace tandem::tools {
 
 struct ExplanationOptions {
-  std::string a = "cpu";                         ///< the first device, the reference
-  std::string b = "vulkan";                      ///< the second
-  std::string arbiter = "cpu-exact";             ///< says which of two answers to a ray is right
-  std::optional<pathtracer::TraceForm> trace_a;  ///< none: that of the RenderOptions
-  std::optional<pathtracer::TraceForm> trace_b;
+  std::string a = "cpu";                           ///< the first device, the reference
+  std::string b = "vulkan";                        ///< the second
+  std::string arbiter = "cpu-exact";               ///< says which of two answers to a ray is right
+  std::optional<pathtracer::TracingMode> trace_a;  ///< none: that of the RenderOptions
+  std::optional<pathtracer::TracingMode> trace_b;
   glm::uvec2 pixel{0};                  ///< from the upper left corner
   std::optional<std::uint32_t> sample;  ///< none: all of the pixel's, of which one is shown
   std::optional<bool> probe;            ///< none: if the devices do the same for the pixel
@@ -42,7 +42,7 @@ struct ExplainedSample {
 struct Explanation {
   JobSummary job;
   rhi::DeviceInfo a, b, arbiter;
-  pathtracer::TraceForm trace_a{}, trace_b{};
+  pathtracer::TracingMode trace_a{}, trace_b{};
   glm::uvec2 pixel{0};
   std::vector<ExplainedSample> samples;  ///< that were looked at
   compare::SceneNames names;
@@ -53,7 +53,7 @@ struct Explanation {
   std::optional<compare::Probing> probing = {};
 
   const ExplainedSample& shown_sample() const { return samples[shown]; }
-  /// Partings and probes of class mismatch.
+  /// Divergences and probes of class mismatch.
   std::uint64_t mismatches() const;
 };
 

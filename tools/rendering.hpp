@@ -31,7 +31,7 @@ rhi::DeviceHandle open_device(const std::string& name, const RenderOptions& opti
 struct Rendering {
   pathtracer::Image image;
   rhi::DeviceInfo device;
-  pathtracer::TraceForm trace = pathtracer::TraceForm::query;
+  pathtracer::TracingMode trace = pathtracer::TracingMode::query;
   pathtracer::Camera camera;
   glm::vec3 background{0};
   double milliseconds = 0.0;        ///< on the device, without building

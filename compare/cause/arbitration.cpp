@@ -176,7 +176,7 @@ bool passes_by(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32
   const Corners t = corners_of(scene, triangle);
   const glm::dvec3 origin(ray.origin);
   double reach = std::numeric_limits<double>::infinity();  // to the exact hit
-  if (exact != pathtracer::no_triangle) {
+  if (exact != pathtracer::no_primitive) {
     const std::optional<glm::dvec3> hit = point_on(ray, scene, exact);
     if (!hit) return false;
     if (glm::distance(closest_point(t, *hit), *hit) <= distance) return true;
@@ -219,7 +219,7 @@ std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtr
   for (std::size_t i = 0; i < disputes.size(); ++i) {
     const TracedRay& ray = disputes[i].ray;
     // The answer to a shadow ray names no primitive.
-    const std::uint32_t primitive = ray.kind == RayKind::closest ? exact[i] : pathtracer::no_triangle;
+    const std::uint32_t primitive = ray.kind == RayKind::closest ? exact[i] : pathtracer::no_primitive;
     distances.push_back(tolerated_distance(ray, scene, scene_magnitude, primitive));
     double reach = ray.kind == RayKind::occlusion ? double{ray.t_max} : 0.0;
     if (const auto hit = point_on(ray, scene, primitive))

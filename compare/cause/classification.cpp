@@ -150,9 +150,9 @@ class Classifier {
     for (std::size_t first = 0; first < paths.size(); first += paths_at_once) {
       const auto some = paths.subspan(first, std::min(paths_at_once, paths.size() - first));
       for (ClassifiedPath& path : judge_paths(devices_, scene_, some)) {
-        for (const Parting& parting : path.partings)
-          ++result_.parting_counts[static_cast<std::size_t>(parting.difference_class)];
-        if (!path.partings.empty()) result_.paths.push_back(std::move(path));
+        for (const Divergence& divergence : path.divergences)
+          ++result_.divergence_counts[static_cast<std::size_t>(divergence.difference_class)];
+        if (!path.divergences.empty()) result_.paths.push_back(std::move(path));
       }
     }
   }
@@ -187,7 +187,7 @@ class Classifier {
 
 std::optional<DifferenceClass> ClassifiedPath::worst() const {
   std::optional<DifferenceClass> worst;
-  for (const Parting& parting : partings) worst = std::max(worst, std::optional(parting.difference_class));
+  for (const Divergence& divergence : divergences) worst = std::max(worst, std::optional(divergence.difference_class));
   return worst;
 }
 

@@ -25,7 +25,7 @@
 namespace tandem::compare {
 
 /// A place where two devices do not do the same from the same inputs.
-struct Parting {
+struct Divergence {
   DifferenceClass difference_class = DifferenceClass::mismatch;
   std::uint32_t segment = 0;
   std::size_t event_index = 0;        ///< in a's recording of the whole path
@@ -40,8 +40,8 @@ struct Parting {
 /// A path that differs, or was looked at all the same.
 struct ClassifiedPath {
   pathtracer::PathId path;
-  std::vector<Parting> partings;  ///< in the order of the path; empty: none
-  /// The worst of its partings; none when there are none.
+  std::vector<Divergence> divergences;  ///< in the order of the path; empty: none
+  /// The worst of its divergences; none when there are none.
   std::optional<DifferenceClass> worst() const;
 };
 
@@ -69,9 +69,9 @@ struct Classification {
   std::uint64_t traced_paths = 0;       ///< all samples of all these pixels, on each of the devices
   std::uint64_t differing_paths = 0;    ///< of them: in any bit of any event but observed fields
   ClassCounts pixel_counts{};           ///< classed pixels by their worst class
-  ClassCounts parting_counts{};         ///< all partings, those of the survey included
+  ClassCounts divergence_counts{};      ///< all divergences, those of the survey included
   std::vector<ClassifiedPixel> pixels;  ///< classed ones, and surveyed ones with a mismatch, row by row
-  std::vector<ClassifiedPath> paths;    ///< those with partings, in the order of pixels, then samples
+  std::vector<ClassifiedPath> paths;    ///< those with divergences, in the order of pixels, then samples
   std::uint64_t mismatches() const;     ///< paths with a mismatch, and pixels with a wrong sum
 };
 
@@ -89,7 +89,7 @@ Classification classify(Devices devices, const pathtracer::Image& image_a, const
                         std::uint32_t samples, const ClassificationOptions& options = {},
                         const pathtracer::Progress& progress = {});
 
-/// The partings of paths, observed fields included; one element for each path, in their order. All recordings are in
+/// The divergences of paths, observed fields included; one element for each path, in their order. All recordings are in
 /// memory at once: some 20 KB a path.
 std::vector<ClassifiedPath> classify_paths(Devices devices, std::span<const pathtracer::PathId> paths);
 

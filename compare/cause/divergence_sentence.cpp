@@ -23,69 +23,69 @@ std::string kind_text(const PathEvent& event) {
   return (vowel ? "an " : "a ") + text;
 }
 
-std::string roulette_text(const Parting& parting) {
-  const bool survives = parting.a.words[word::roulette_survives] != 0;
+std::string roulette_text(const Divergence& divergence) {
+  const bool survives = divergence.a.words[word::roulette_survives] != 0;
   return fmt::format("roulette {} on a and {} on b: the number {:.9g} lies within rounding of the threshold {:.9g}.",
                      survives ? "goes on" : "ends the path", survives ? "ends the path" : "goes on",
-                     static_cast<double>(parting.a.words[word::roulette_bits] >> 8u) * 0x1p-24,
-                     parting.a.number(word::roulette_survival));
+                     static_cast<double>(divergence.a.words[word::roulette_bits] >> 8u) * 0x1p-24,
+                     divergence.a.number(word::roulette_survival));
 }
 
-std::string decision_text(const Parting& parting) {
-  const bool flipped = parting.difference_class == DifferenceClass::flipped_decision;
+std::string decision_text(const Divergence& divergence) {
+  const bool flipped = divergence.difference_class == DifferenceClass::flipped_decision;
   const char* const cause = flipped ? "moving the segment by rounding turns this decision on one device, too"
                                     : "from the same state, and rounding does not explain it";
-  if (!parting.field)
-    return fmt::format("a goes on with {}, b with {}: {}.", kind_text(parting.a), kind_text(parting.b), cause);
-  const EventField& field = *parting.field;
-  if (flipped && parting.a.kind() == EventKind::roulette) return roulette_text(parting);
-  return fmt::format("the {} of the {} is {} on a and {} on b: {}.", field.name, name(parting.a.kind()),
-                     field_text(field, parting.a), field_text(field, parting.b), cause);
+  if (!divergence.field)
+    return fmt::format("a goes on with {}, b with {}: {}.", kind_text(divergence.a), kind_text(divergence.b), cause);
+  const EventField& field = *divergence.field;
+  if (flipped && divergence.a.kind() == EventKind::roulette) return roulette_text(divergence);
+  return fmt::format("the {} of the {} is {} on a and {} on b: {}.", field.name, name(divergence.a.kind()),
+                     field_text(field, divergence.a), field_text(field, divergence.b), cause);
 }
 
-std::string value_text(const Parting& parting) {
-  const EventField& field = *parting.field;
-  const std::string what = fmt::format("the {} of the {}", field.name, name(parting.a.kind()));
-  if (parting.difference_class == DifferenceClass::rounding)
+std::string value_text(const Divergence& divergence) {
+  const EventField& field = *divergence.field;
+  const std::string what = fmt::format("the {} of the {}", field.name, name(divergence.a.kind()));
+  if (divergence.difference_class == DifferenceClass::rounding)
     return fmt::format("{} differs by {} units in the last place ({:.2g} relative): rounding.", what,
-                       parting.ulp_distance, parting.relative_difference);
-  const std::string values =
-      fmt::format("{} is ({}) on a and ({}) on b", what, field_text(field, parting.a), field_text(field, parting.b));
+                       divergence.ulp_distance, divergence.relative_difference);
+  const std::string values = fmt::format("{} is ({}) on a and ({}) on b", what, field_text(field, divergence.a),
+                                         field_text(field, divergence.b));
   if (field.tier == FieldTier::observed)
     return fmt::format("{}, for the same hit of the same ray: more than rounding explains.", values);
   return fmt::format("{}, {:.2g} apart relatively, from the same state: more than rounding explains.", values,
-                     parting.relative_difference);
+                     divergence.relative_difference);
 }
 
 }  // namespace
 
 std::string answer_text(const pathtracer::Scene& scene, pathtracer::RayKind kind, std::uint32_t answer) {
   if (kind == pathtracer::RayKind::occlusion) return answer != 0 ? "something" : "nothing";
-  if (answer == pathtracer::no_triangle) return "nothing";
+  if (answer == pathtracer::no_primitive) return "nothing";
   return answer < scene.triangles.size() ? fmt::format("triangle {}", answer)
                                          : fmt::format("sphere {}", answer - scene.triangles.size());
 }
 
-std::string sentence_of(const Parting& parting) {
-  const bool is_value = parting.field && parting.field->tier != FieldTier::exact;
+std::string sentence_of(const Divergence& divergence) {
+  const bool is_value = divergence.field && divergence.field->tier != FieldTier::exact;
   const std::string place =
-      parting.a.kind() == EventKind::camera ? "Camera" : fmt::format("Segment {}", parting.segment);
-  return fmt::format("{}: {}", place, is_value ? value_text(parting) : decision_text(parting));
+      divergence.a.kind() == EventKind::camera ? "Camera" : fmt::format("Segment {}", divergence.segment);
+  return fmt::format("{}: {}", place, is_value ? value_text(divergence) : decision_text(divergence));
 }
 
-std::string sentence_of_answers(const Parting& parting, const pathtracer::Scene& scene,
+std::string sentence_of_answers(const Divergence& divergence, const pathtracer::Scene& scene,
                                 const pathtracer::PathId& path) {
-  const pathtracer::TracedRay ray = pathtracer::ray_of(path, parting.a);
-  const std::uint32_t b = parting.b.words[word::ray_answer];
+  const pathtracer::TracedRay ray = pathtracer::ray_of(path, divergence.a);
+  const std::uint32_t b = divergence.b.words[word::ray_answer];
   const auto text = [&](std::uint32_t answer) { return answer_text(scene, ray.kind, answer); };
   const bool occlusion = ray.kind == pathtracer::RayKind::occlusion;
-  std::string sentence = fmt::format("Segment {}: the {} from {} {} {} on a and {} on b", parting.segment,
+  std::string sentence = fmt::format("Segment {}: the {} from {} {} {} on a and {} on b", divergence.segment,
                                      occlusion ? "shadow ray" : "ray", vector_text(ray.origin),
                                      occlusion ? "finds" : "meets", text(ray.answer), text(b));
-  switch (parting.difference_class) {
+  switch (divergence.difference_class) {
     case DifferenceClass::mismatch:
       return fmt::format("{}; exactly it is {}, and rounding does not explain the difference.", sentence,
-                         text(parting.exact_answer.value_or(pathtracer::no_triangle)));
+                         text(divergence.exact_answer.value_or(pathtracer::no_primitive)));
     case DifferenceClass::grazing_visibility:
       return sentence + " in its way; it grazes what is there: either is right.";
     case DifferenceClass::coincident_geometry:

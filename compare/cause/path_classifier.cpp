@@ -112,33 +112,33 @@ void judge_by_arbiter(const Devices& devices, const Scene& scene, std::span<Judg
 }
 
 /// A path of which b does something else than it does from the state of each segment by itself: a mismatch.
-Parting hidden_parting(std::span<const PathEvent> a, std::span<const PathEvent> b) {
+Divergence hidden_divergence(std::span<const PathEvent> a, std::span<const PathEvent> b) {
   const std::optional<EventPlace> place = first_divergence(a, b);
-  Parting parting;
+  Divergence divergence;
   if (place) {
-    parting.event_index = place->event;
-    if (place->event < a.size()) parting.a = a[place->event];
-    if (place->event < b.size()) parting.b = b[place->event];
-    parting.field = field_at(a, b, *place);
-    parting.segment = parting.a.segment();
-    if (parting.field) {
-      parting.ulp_distance = ulp_distance(*parting.field, parting.a, parting.b);
-      parting.relative_difference = relative_difference(*parting.field, parting.a, parting.b);
+    divergence.event_index = place->event;
+    if (place->event < a.size()) divergence.a = a[place->event];
+    if (place->event < b.size()) divergence.b = b[place->event];
+    divergence.field = field_at(a, b, *place);
+    divergence.segment = divergence.a.segment();
+    if (divergence.field) {
+      divergence.ulp_distance = ulp_distance(*divergence.field, divergence.a, divergence.b);
+      divergence.relative_difference = relative_difference(*divergence.field, divergence.a, divergence.b);
     }
-    parting.sentence = sentence_of(parting);
+    divergence.sentence = sentence_of(divergence);
   } else {
-    parting.sentence = "The path has other results than its recording: one of the devices does not repeat itself.";
+    divergence.sentence = "The path has other results than its recording: one of the devices does not repeat itself.";
   }
-  return parting;
+  return divergence;
 }
 
-/// Paths without a parting so far that are still not the same as a whole.
-void find_hidden_partings(const Devices& devices, std::span<const PathEvents> recordings,
-                          std::vector<ClassifiedPath>& paths) {
+/// Paths without a divergence so far that are still not the same as a whole.
+void find_hidden_divergences(const Devices& devices, std::span<const PathEvents> recordings,
+                             std::vector<ClassifiedPath>& paths) {
   std::vector<PathStart> starts;
   std::vector<std::size_t> indices;
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (!paths[i].partings.empty()) continue;
+    if (!paths[i].divergences.empty()) continue;
     starts.push_back({.path = paths[i].path});
     indices.push_back(i);
   }
@@ -147,7 +147,7 @@ void find_hidden_partings(const Devices& devices, std::span<const PathEvents> re
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (is_same(a[i], b[i])) continue;
     const std::vector<PathEvents> whole = devices.b.record_paths({&starts[i], 1});
-    paths[indices[i]].partings.push_back(hidden_parting(recordings[indices[i]], whole.front()));
+    paths[indices[i]].divergences.push_back(hidden_divergence(recordings[indices[i]], whole.front()));
   }
 }
 
@@ -177,11 +177,11 @@ std::vector<ClassifiedPath> judge_paths(const Devices& devices, const Scene& sce
   std::vector<ClassifiedPath> result;
   auto segment = segments.begin();
   for (const PathId& path : paths) {
-    ClassifiedPath& classified = result.emplace_back(ClassifiedPath{.path = path, .partings = {}});
+    ClassifiedPath& classified = result.emplace_back(ClassifiedPath{.path = path, .divergences = {}});
     for (bool first = true; segment != segments.end() && (first || has_state(*segment)); ++segment, first = false)
-      std::move(segment->partings.begin(), segment->partings.end(), std::back_inserter(classified.partings));
+      std::move(segment->divergences.begin(), segment->divergences.end(), std::back_inserter(classified.divergences));
   }
-  find_hidden_partings(devices, recordings, result);
+  find_hidden_divergences(devices, recordings, result);
   return result;
 }
 

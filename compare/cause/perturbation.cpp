@@ -35,8 +35,8 @@ class Numbers {
 
 /// What is added to the numbers of a state, in units in the last place.
 struct Move {
-  glm::dvec3 origin, direction, throughput, radiance, scatterer;
-  double density = 0, squeezing = 0;
+  glm::dvec3 origin, direction, throughput, radiance, previous;
+  double density = 0, eta_scale = 0;
 };
 
 Move scaled(const Move& move, double factor) {
@@ -44,9 +44,9 @@ Move scaled(const Move& move, double factor) {
           .direction = move.direction * factor,
           .throughput = move.throughput * factor,
           .radiance = move.radiance * factor,
-          .scatterer = move.scatterer * factor,
+          .previous = move.previous * factor,
           .density = move.density * factor,
-          .squeezing = move.squeezing * factor};
+          .eta_scale = move.eta_scale * factor};
 }
 
 PathEvent moved(const PathEvent& state, const Move& move) {
@@ -63,14 +63,14 @@ PathEvent moved(const PathEvent& state, const Move& move) {
     for (int i = 0; i < 3; ++i) number(index + static_cast<std::size_t>(i), by[i]);
   };
   position(word::segment_origin, move.origin);
-  position(word::segment_scatterer_position, move.scatterer);
+  position(word::segment_previous_position, move.previous);
   const glm::dvec3 direction(state.vector(word::segment_direction));
   const glm::dvec3 turned = direction + move.direction * (unit * largest_magnitude(glm::vec3(direction)));
   result.set(word::segment_direction, glm::vec3(turned * (glm::length(direction) / glm::length(turned))));
   color(word::segment_throughput, move.throughput);
   color(word::segment_radiance, move.radiance);
-  number(word::segment_scatterer_density, move.density);
-  number(word::segment_squeezing, move.squeezing);
+  number(word::segment_previous_density, move.density);
+  number(word::segment_eta_scale, move.eta_scale);
   return result;
 }
 
@@ -140,9 +140,9 @@ std::vector<PathEvent> perturbed_states(const PathEvent& state) {
                        .direction = numbers.next_vector(),
                        .throughput = numbers.next_vector(),
                        .radiance = numbers.next_vector(),
-                       .scatterer = numbers.next_vector(),
+                       .previous = numbers.next_vector(),
                        .density = numbers.next(),
-                       .squeezing = numbers.next()};
+                       .eta_scale = numbers.next()};
     // Small moves too: what lies between two thresholds that are close to each other is not missed.
     static constexpr double sizes[] = {most_ulp, most_ulp / 4, most_ulp / 2, most_ulp / 16};
     const double size = sizes[i % std::size(sizes)];

@@ -19,25 +19,25 @@ PathEvent event_at(std::span<const PathEvent> events, EventPlace place) {
   return place.event < events.size() ? events[place.event] : PathEvent{};
 }
 
-Parting parting_at(const JudgedSegment& segment, DifferenceClass difference_class) {
-  Parting parting{.difference_class = difference_class,
-                  .segment = segment.a.empty() ? 0 : segment.a.front().segment(),
-                  .event_index = segment.first_event + segment.place.event,
-                  .a = event_at(segment.a, segment.place),
-                  .b = event_at(segment.b, segment.place),
-                  .field = field_at(segment.a, segment.b, segment.place)};
-  if (parting.field) {
-    parting.ulp_distance = ulp_distance(*parting.field, parting.a, parting.b);
-    parting.relative_difference = relative_difference(*parting.field, parting.a, parting.b);
+Divergence divergence_at(const JudgedSegment& segment, DifferenceClass difference_class) {
+  Divergence divergence{.difference_class = difference_class,
+                        .segment = segment.a.empty() ? 0 : segment.a.front().segment(),
+                        .event_index = segment.first_event + segment.place.event,
+                        .a = event_at(segment.a, segment.place),
+                        .b = event_at(segment.b, segment.place),
+                        .field = field_at(segment.a, segment.b, segment.place)};
+  if (divergence.field) {
+    divergence.ulp_distance = ulp_distance(*divergence.field, divergence.a, divergence.b);
+    divergence.relative_difference = relative_difference(*divergence.field, divergence.a, divergence.b);
   }
-  return parting;
+  return divergence;
 }
 
 void add(JudgedSegment& segment, DifferenceClass difference_class) {
   if (difference_class == DifferenceClass::rounding && std::exchange(segment.has_rounding, true)) return;
-  Parting parting = parting_at(segment, difference_class);
-  parting.sentence = sentence_of(parting);
-  segment.partings.push_back(std::move(parting));
+  Divergence divergence = divergence_at(segment, difference_class);
+  divergence.sentence = sentence_of(divergence);
+  segment.divergences.push_back(std::move(divergence));
 }
 
 bool is_answer(const EventField& field, EventKind kind) {
@@ -121,13 +121,13 @@ std::vector<Dispute> disputes_of(const JudgedSegment& segment) {
 void conclude(JudgedSegment& segment, const pathtracer::Scene& scene, std::span<const Judgement> judgements) {
   bool tie = true;
   for (const Judgement& judgement : judgements) tie = tie && judgement.ruling == Ruling::tie;
-  Parting parting = parting_at(segment, DifferenceClass::mismatch);
-  const pathtracer::TracedRay ray = pathtracer::ray_of(segment.path, parting.a);
-  const std::uint32_t answer_b = parting.b.words[word::ray_answer];
-  if (tie) parting.difference_class = class_of_tie(scene, ray, ray.answer, answer_b);
-  parting.exact_answer = judgements.front().exact_answer;
-  parting.sentence = sentence_of_answers(parting, scene, segment.path);
-  segment.partings.push_back(std::move(parting));
+  Divergence divergence = divergence_at(segment, DifferenceClass::mismatch);
+  const pathtracer::TracedRay ray = pathtracer::ray_of(segment.path, divergence.a);
+  const std::uint32_t answer_b = divergence.b.words[word::ray_answer];
+  if (tie) divergence.difference_class = class_of_tie(scene, ray, ray.answer, answer_b);
+  divergence.exact_answer = judgements.front().exact_answer;
+  divergence.sentence = sentence_of_answers(divergence, scene, segment.path);
+  segment.divergences.push_back(std::move(divergence));
 }
 
 }  // namespace tandem::compare

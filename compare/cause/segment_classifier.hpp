@@ -23,9 +23,9 @@ struct JudgedSegment {
   std::span<const pathtracer::PathEvent> a;
   pathtracer::PathEvents b;
 
-  EventPlace place = {};               ///< what is before it has been judged
-  bool has_rounding = false;           ///< a parting says so already
-  std::vector<Parting> partings = {};  ///< in order
+  EventPlace place = {};                     ///< what is before it has been judged
+  bool has_rounding = false;                 ///< a divergence says so already
+  std::vector<Divergence> divergences = {};  ///< in order
 };
 
 /// What the judgement of a segment waits for.

@@ -37,10 +37,10 @@ const pathtracer::GpuSphere* sphere_of(const Scene& scene, std::uint32_t answer)
 }
 
 /// Where the ray meets what the answer names; none where nothing is named, or a sphere that moves.
-std::vector<Encounter> encounters_of(const Scene& scene, const TracedRay& ray, std::uint32_t answer) {
+std::vector<Intersection> intersections_of(const Scene& scene, const TracedRay& ray, std::uint32_t answer) {
   if (answer < scene.triangles.size()) {
-    const std::optional<Encounter> found = meet(geometry_ray(ray), corners_of(scene, answer));
-    return found ? std::vector{*found} : std::vector<Encounter>{};
+    const std::optional<Intersection> found = meet(geometry_ray(ray), corners_of(scene, answer));
+    return found ? std::vector{*found} : std::vector<Intersection>{};
   }
   const pathtracer::GpuSphere* const sphere = sphere_of(scene, answer);
   if (!sphere || sphere->motion != glm::vec3(0)) return {};
@@ -76,14 +76,14 @@ double distance_to_outline(const Scene& scene, const TracedRay& ray, std::uint32
 
 DifferenceClass class_of_tie(const Scene& scene, const TracedRay& ray, std::uint32_t answer_a, std::uint32_t answer_b) {
   if (ray.kind == pathtracer::RayKind::occlusion) return DifferenceClass::grazing_visibility;
-  const std::vector<Encounter> with_a = encounters_of(scene, ray, answer_a),
-                               with_b = encounters_of(scene, ray, answer_b);
-  const auto is_certain = [](const Encounter& encounter) { return encounter.certain; };
+  const std::vector<Intersection> with_a = intersections_of(scene, ray, answer_a),
+                                  with_b = intersections_of(scene, ray, answer_b);
+  const auto is_certain = [](const Intersection& intersection) { return intersection.certain; };
   const bool inside_a = std::any_of(with_a.begin(), with_a.end(), is_certain);
   const bool inside_b = std::any_of(with_b.begin(), with_b.end(), is_certain);
   if (inside_a && inside_b) {
-    for (const Encounter& a : with_a)
-      for (const Encounter& b : with_b)
+    for (const Intersection& a : with_a)
+      for (const Intersection& b : with_b)
         if (a.certain && b.certain && a.t_low <= b.t_high && b.t_low <= a.t_high)
           return DifferenceClass::coincident_geometry;
   }
@@ -130,11 +130,11 @@ bool is_report_within_rounding(const Scene& scene, const PathEvent& a, const Pat
   if (all_close) return true;
   const auto is_possible = [&](const PathEvent& event) {
     const TracedRay ray = pathtracer::ray_of({}, event);
-    const std::vector<Encounter> encounters = encounters_of(scene, ray, ray.answer);
-    return std::any_of(encounters.begin(), encounters.end(), [&](const Encounter& encounter) {
-      if (is_t) return event.number(field) >= encounter.t_low && event.number(field) <= encounter.t_high;
+    const std::vector<Intersection> intersections = intersections_of(scene, ray, ray.answer);
+    return std::any_of(intersections.begin(), intersections.end(), [&](const Intersection& intersection) {
+      if (is_t) return event.number(field) >= intersection.t_low && event.number(field) <= intersection.t_high;
       for (std::size_t i = 0; i < 2; ++i)
-        if (!(std::abs(event.number(field + i) - encounter.barycentrics[i]) <= encounter.barycentric_errors[i]))
+        if (!(std::abs(event.number(field + i) - intersection.barycentrics[i]) <= intersection.barycentric_errors[i]))
           return false;
       return true;
     });

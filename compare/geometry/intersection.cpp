@@ -55,41 +55,41 @@ Projection project(const GeometryRay& ray, const Corners& corners) {
 
 }  // namespace
 
-std::optional<Encounter> meet(const GeometryRay& ray, const Corners& corners) {
+std::optional<Intersection> meet(const GeometryRay& ray, const Corners& corners) {
   double magnitude = ray.magnitude;
   for (const glm::dvec3& corner : corners) magnitude = std::max(magnitude, largest(corner));
   const double error = rounding_distance(magnitude, tolerated_ulp);
   const Projection seen = project(ray, corners);
   if (!seen.inside && !(seen.to_outline <= error)) return std::nullopt;
 
-  Encounter encounter;
+  Intersection intersection;
   // Seen edge-on within rounding, it may be met anywhere: single precision cannot tell its plane from the ray.
   constexpr double infinity = std::numeric_limits<double>::infinity();
   if (!(seen.height > 2 * error)) {
-    encounter.t_low = -infinity;
-    encounter.t_high = infinity;
-    encounter.barycentric_errors = {infinity, infinity};
-    return encounter;
+    intersection.t_low = -infinity;
+    intersection.t_high = infinity;
+    intersection.barycentric_errors = {infinity, infinity};
+    return intersection;
   }
-  encounter.certain = seen.inside && seen.to_outline > error;
+  intersection.certain = seen.inside && seen.to_outline > error;
   const glm::dvec3 edge_1 = corners[1] - corners[0], edge_2 = corners[2] - corners[0];
   const glm::dvec3 normal = glm::cross(edge_1, edge_2), moment = glm::cross(ray.origin - corners[0], ray.direction);
   const double cosine = glm::dot(normal, ray.direction), length = glm::length(ray.direction);
-  encounter.front_face = cosine < 0;
+  intersection.front_face = cosine < 0;
   const double slope = glm::length(normal) * length / std::abs(cosine);  // 1 / cosine of the angle of incidence
   const double in_plane = error * (1 + slope);
   const double t = glm::dot(normal, corners[0] - ray.origin) / cosine;
-  encounter.t_low = t - in_plane / length;
-  encounter.t_high = t + in_plane / length;
-  encounter.barycentrics = {-glm::dot(edge_2, moment) / cosine, glm::dot(edge_1, moment) / cosine};
+  intersection.t_low = t - in_plane / length;
+  intersection.t_high = t + in_plane / length;
+  intersection.barycentrics = {-glm::dot(edge_2, moment) / cosine, glm::dot(edge_1, moment) / cosine};
   const auto relative_to_height = [&](const glm::dvec3& base) {
     return in_plane * glm::length(base) / glm::length(normal);
   };
-  encounter.barycentric_errors = {relative_to_height(edge_2), relative_to_height(edge_1)};
-  return encounter;
+  intersection.barycentric_errors = {relative_to_height(edge_2), relative_to_height(edge_1)};
+  return intersection;
 }
 
-std::vector<Encounter> meet(const GeometryRay& ray, const pathtracer::GpuSphere& sphere) {
+std::vector<Intersection> meet(const GeometryRay& ray, const pathtracer::GpuSphere& sphere) {
   const glm::dvec3 centre(sphere.centre), from_centre = ray.origin - centre;
   const double radius = sphere.radius, length = glm::length(ray.direction);
   const double error = rounding_distance(std::max({ray.magnitude, largest(centre), radius}), tolerated_ulp);
@@ -100,7 +100,7 @@ std::vector<Encounter> meet(const GeometryRay& ray, const pathtracer::GpuSphere&
     return std::sqrt(std::max(0.0, radius * radius - at_distance * at_distance)) / length;
   };
   const double least = half_chord(distance + error), greatest = half_chord(std::max(0.0, distance - error));
-  Encounter enter, leave;
+  Intersection enter, leave;
   enter.certain = leave.certain = distance < radius - error;
   enter.t_low = t_middle - greatest - error / length;
   enter.t_high = t_middle - least + error / length;

@@ -24,7 +24,7 @@ struct GeometryRay {
 inline constexpr double tolerated_ulp = 32;
 
 /// A surface on a ray, or so close to it that rounding may put it there.
-struct Encounter {
+struct Intersection {
   double t_low = 0;  ///< rounding leaves t within these two
   double t_high = 0;
   bool certain = false;                        ///< rounding cannot make the ray miss it
@@ -37,9 +37,9 @@ struct Encounter {
 using Corners = std::array<glm::dvec3, 3>;
 
 /// Nothing when the ray passes it by; t may be negative.
-std::optional<Encounter> meet(const GeometryRay& ray, const Corners& corners);
+std::optional<Intersection> meet(const GeometryRay& ray, const Corners& corners);
 
 /// Where the ray enters and leaves the sphere, at the time when the shutter opens; none when it passes by.
-std::vector<Encounter> meet(const GeometryRay& ray, const pathtracer::GpuSphere& sphere);
+std::vector<Intersection> meet(const GeometryRay& ray, const pathtracer::GpuSphere& sphere);
 
 }  // namespace tandem::compare

@@ -50,10 +50,10 @@ constexpr std::array segment = {exact("depth", 2, FieldType::count),
                                 carried("direction", 8, FieldType::vector3, geometric),
                                 carried("throughput", 12, FieldType::color, radiometric),
                                 carried("radiance", 16, FieldType::color, radiometric),
-                                carried("squeezing", 11, FieldType::number, radiometric),
+                                carried("eta_scale", 11, FieldType::number, radiometric),
                                 carried("ray length", 19, FieldType::number, geometric),
-                                carried("scatterer position", 20, FieldType::vector3, geometric),
-                                carried("scatterer density", 7, FieldType::number, radiometric)};
+                                carried("previous position", 20, FieldType::vector3, geometric),
+                                carried("previous density", 7, FieldType::number, radiometric)};
 
 constexpr std::array ray = {exact("ray kind", 2, FieldType::choice),
                             exact("dimension", 3, FieldType::count),

@@ -17,7 +17,7 @@ PrimitiveId id_of(const ProbeAnswer& answer) {
 const ProbeHit* find(std::span<const ProbeHit> hits, const ProbeAnswer& answer) {
   const ProbeHit* found = nullptr;
   const auto distance = [&](const ProbeHit& hit) {
-    return std::max({0.0, hit.encounter.t_low - answer.t, answer.t - hit.encounter.t_high});
+    return std::max({0.0, hit.intersection.t_low - answer.t, answer.t - hit.intersection.t_high});
   };
   for (const ProbeHit& hit : hits)
     if (hit.id == id_of(answer) && (!found || distance(hit) < distance(*found))) found = &hit;
@@ -29,14 +29,14 @@ bool anything_counts(std::span<const ProbeHit> hits) {
 }
 
 /// Whether t lies where the ray meets the hit's surface.
-bool is_at(const Encounter& encounter, double t) { return t >= encounter.t_low && t <= encounter.t_high; }
+bool is_at(const Intersection& intersection, double t) { return t >= intersection.t_low && t <= intersection.t_high; }
 
 /// Whether the answer names a primitive that may be the first, and where the ray meets it.
 bool is_right_primitive(const Trial& trial, std::span<const ProbeHit> hits, const ProbeAnswer& answer) {
   if (answer.type == AnswerType::miss) return !anything_counts(hits);
   if (trial.any_hit) return answer.type != AnswerType::missing && !hits.empty();
   const ProbeHit* const hit = find(hits, answer);
-  return hit && is_at(hit->encounter, answer.t);
+  return hit && is_at(hit->intersection, answer.t);
 }
 
 bool is_within(double value, double expected, double error) { return std::abs(value - expected) <= error; }
@@ -57,7 +57,7 @@ bool is_right_element(const AffineMap& map, std::size_t element, double value) {
 bool is_right_field(std::span<const ProbeInstance> instances, const ProbeRay& ray, const ProbeHit& hit,
                     const ProbeField& field, const ProbeAnswer& answer) {
   const ProbeInstance& instance = instances[hit.id.instance];
-  const Encounter& encounter = hit.encounter;
+  const Intersection& intersection = hit.intersection;
   const std::uint32_t bits = bits_of(answer, field);
   const double value = std::bit_cast<float>(bits);
   const bool is_triangle = hit.id.type == AnswerType::triangle;
@@ -69,10 +69,10 @@ bool is_right_field(std::span<const ProbeInstance> instances, const ProbeRay& ra
       return bits == instance.hit_record;
     case offsetof(ProbeAnswer, hit_kind):
       if (!is_triangle) return bits == hit_kind::sphere;
-      if (!encounter.front_face) return bits == hit_kind::front || bits == hit_kind::back;
-      return bits == (*encounter.front_face ? hit_kind::front : hit_kind::back);
+      if (!intersection.front_face) return bits == hit_kind::front || bits == hit_kind::back;
+      return bits == (*intersection.front_face ? hit_kind::front : hit_kind::back);
     case offsetof(ProbeAnswer, t):
-      return is_at(encounter, value);
+      return is_at(intersection, value);
     default:
       break;
   }
@@ -96,8 +96,9 @@ bool is_right_field(std::span<const ProbeInstance> instances, const ProbeRay& ra
                      rounding_distance(mapped_magnitude(to_object, origin), tolerated_ulp));
   }
   const std::size_t coordinate = index_in(offsetof(ProbeAnswer, barycentrics));
-  return is_triangle ? is_within(value, encounter.barycentrics[coordinate], encounter.barycentric_errors[coordinate])
-                     : value == 0;
+  return is_triangle
+             ? is_within(value, intersection.barycentrics[coordinate], intersection.barycentric_errors[coordinate])
+             : value == 0;
 }
 
 Ruling ruling_of(bool a_right, bool b_right) {
@@ -108,10 +109,10 @@ Ruling ruling_of(bool a_right, bool b_right) {
 /// Of two answers that may both be right.
 DifferenceClass class_of_tie(const Trial& trial, const ProbeHit* a, const ProbeHit* b) {
   if (trial.any_hit) return DifferenceClass::grazing_visibility;
-  if (a && b && a->encounter.certain && b->encounter.certain) return DifferenceClass::coincident_geometry;
+  if (a && b && a->intersection.certain && b->intersection.certain) return DifferenceClass::coincident_geometry;
   const ProbeHit* only = a ? a : b;
   // What the ray meets the inside of, but where it begins or ends.
-  if (!(a && b) && only && only->encounter.certain) return DifferenceClass::grazing_visibility;
+  if (!(a && b) && only && only->intersection.certain) return DifferenceClass::grazing_visibility;
   return DifferenceClass::edge_or_vertex_tie;
 }
 

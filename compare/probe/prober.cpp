@@ -51,9 +51,9 @@ rhi::ShaderTableHandle create_table(rhi::Device& device) {
 
 }  // namespace
 
-Prober::Prober(rhi::Device& device, const pathtracer::Scene& scene, std::optional<pathtracer::TraceForm> form)
-    : device_(device), form_(pathtracer::choose_trace_form(device.info(), form)), structures_(device, scene) {
-  if (form_ == pathtracer::TraceForm::query) {
+Prober::Prober(rhi::Device& device, const pathtracer::Scene& scene, std::optional<pathtracer::TracingMode> form)
+    : device_(device), form_(pathtracer::choose_tracing_mode(device.info(), form)), structures_(device, scene) {
+  if (form_ == pathtracer::TracingMode::query) {
     compute_ =
         device.create_compute_pipeline({.shader = device.create_shader_module({probe_shaders::probe(), "probe.comp"}),
                                         .specialization = {},
@@ -67,7 +67,7 @@ Prober::Prober(rhi::Device& device, const pathtracer::Scene& scene, std::optiona
 
 bool Prober::supports(const Trial& trial) const {
   const bool skips = (trial.flags & (ray_flag::skip_triangles | ray_flag::skip_boxes)) != 0;
-  return !skips || form_ == pathtracer::TraceForm::query || device_.info().capabilities.primitive_culling;
+  return !skips || form_ == pathtracer::TracingMode::query || device_.info().capabilities.primitive_culling;
 }
 
 std::vector<ProbeAnswer> Prober::answer(const Trial& trial, std::span<const ProbeRay> rays) {
@@ -77,7 +77,7 @@ std::vector<ProbeAnswer> Prober::answer(const Trial& trial, std::span<const Prob
   const rhi::BindGroupHandle group =
       device_.create_bind_group({.pipeline = pipeline_,
                                  .set = 0,
-                                 .entries = {{.binding = 0, .resource = structures_.top_level(trial.arrangement)},
+                                 .entries = {{.binding = 0, .resource = structures_.top_level(trial.instance_setup)},
                                              {.binding = 1, .resource = rhi::BufferRange{ray_buffer}},
                                              {.binding = 2, .resource = rhi::BufferRange{structures_.spheres()}},
                                              {.binding = 3, .resource = rhi::BufferRange{answer_buffer}}},
@@ -88,7 +88,7 @@ std::vector<ProbeAnswer> Prober::answer(const Trial& trial, std::span<const Prob
   list->upload(ray_buffer, 0, std::as_bytes(rays));
   // What no invocation writes is no answer.
   list->fill({answer_buffer}, static_cast<std::uint32_t>(AnswerType::missing));
-  if (form_ == pathtracer::TraceForm::query) {
+  if (form_ == pathtracer::TracingMode::query) {
     const std::uint32_t workgroup = compute_->reflection().workgroup_size[0];
     list->dispatch({.pipeline = compute_,
                     .bind_groups = {group},

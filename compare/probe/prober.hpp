@@ -8,7 +8,7 @@
 #include "compare/probe/answer.hpp"
 #include "compare/probe/structures.hpp"
 #include "compare/probe/trial.hpp"
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
@@ -18,10 +18,10 @@ namespace tandem::compare {
 class Prober {
  public:
   /// The device and the scene must outlive it. Throws rhi::Error for what the device refuses.
-  /// @param form as pathtracer::choose_trace_form takes it
-  Prober(rhi::Device& device, const pathtracer::Scene& scene, std::optional<pathtracer::TraceForm> form = {});
+  /// @param form as pathtracer::choose_tracing_mode takes it
+  Prober(rhi::Device& device, const pathtracer::Scene& scene, std::optional<pathtracer::TracingMode> form = {});
 
-  pathtracer::TraceForm form() const noexcept { return form_; }
+  pathtracer::TracingMode form() const noexcept { return form_; }
   /// Whether the device can do what the trial asks for; if not, the trial is not to be made.
   bool supports(const Trial& trial) const;
   /// One answer for each ray. @param rays as the trial's placements move them; not empty
@@ -29,7 +29,7 @@ class Prober {
 
  private:
   rhi::Device& device_;
-  pathtracer::TraceForm form_;
+  pathtracer::TracingMode form_;
   ProbeStructures structures_;
   rhi::PipelineHandle pipeline_;
   rhi::ComputePipelineHandle compute_;  ///< of the form query

@@ -24,7 +24,7 @@ ClassCounts Probing::classes() const {
 }
 
 Probing probe(rhi::Device& a, rhi::Device& b, const pathtracer::Scene& scene, std::span<const PathRay> rays,
-              std::optional<pathtracer::TraceForm> form_a, std::optional<pathtracer::TraceForm> form_b) {
+              std::optional<pathtracer::TracingMode> form_a, std::optional<pathtracer::TracingMode> form_b) {
   std::vector<PathRay> askable;
   for (const PathRay& ray : rays)
     if (is_askable(ray.ray)) askable.push_back(ray);
@@ -44,7 +44,7 @@ Probing probe(rhi::Device& a, rhi::Device& b, const pathtracer::Scene& scene, st
     const std::vector<ProbeRay> asked = rays_of(trial, askable, reference, scene);
     const std::vector<ProbeAnswer> answers_a = prober_a.answer(trial, asked);
     const std::vector<ProbeAnswer> answers_b = prober_b.answer(trial, asked);
-    const std::vector<ProbeInstance> instances = reference.instances(trial.arrangement);
+    const std::vector<ProbeInstance> instances = reference.instances(trial.instance_setup);
     ProbeTrial summary{.name = trial.name, .rays = asked.size()};
     for (std::size_t i = 0; i < asked.size(); ++i) {
       // Nothing has to be traced in doubles where both devices say the same.

@@ -11,8 +11,8 @@
 #include "compare/probe/field.hpp"
 #include "compare/probe/ray.hpp"
 #include "compare/probe/trial.hpp"
-#include "pathtracer/render/trace_form.hpp"
 #include "pathtracer/render/traced_ray.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
@@ -52,10 +52,10 @@ struct Probing {
 };
 
 /// Asks both devices.
-/// @param form_a,form_b as pathtracer::choose_trace_form takes them
+/// @param form_a,form_b as pathtracer::choose_tracing_mode takes them
 /// @param rays finite, with a direction; others are left out
 /// Throws rhi::Error for what a device refuses.
 Probing probe(rhi::Device& a, rhi::Device& b, const pathtracer::Scene& scene, std::span<const PathRay> rays,
-              std::optional<pathtracer::TraceForm> form_a = {}, std::optional<pathtracer::TraceForm> form_b = {});
+              std::optional<pathtracer::TracingMode> form_a = {}, std::optional<pathtracer::TracingMode> form_b = {});
 
 }  // namespace tandem::compare

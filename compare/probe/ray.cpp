@@ -9,14 +9,14 @@ namespace tandem::compare {
 namespace {
 
 /// The nearest hit that counts.
-std::optional<Encounter> first_of(std::span<const ProbeHit> hits) {
-  std::optional<Encounter> first;
+std::optional<Intersection> first_of(std::span<const ProbeHit> hits) {
+  std::optional<Intersection> first;
   for (const ProbeHit& hit : hits)
-    if (hit.counts && (!first || hit.encounter.t_low < first->t_low)) first = hit.encounter;
+    if (hit.counts && (!first || hit.intersection.t_low < first->t_low)) first = hit.intersection;
   return first;
 }
 
-void cut(ProbeRay& ray, Window window, const Encounter& first) {
+void cut(ProbeRay& ray, Window window, const Intersection& first) {
   // Far enough from the hit that rounding cannot move it over the end, and no farther.
   const double gap = first.t_high - first.t_low;
   const double before = std::max(first.t_low - gap, 0.0), behind = first.t_high + gap;
@@ -82,8 +82,9 @@ std::vector<PathRay> spread_evenly(std::span<const PathRay> rays, std::size_t co
 std::vector<ProbeRay> rays_of(const Trial& trial, std::span<const PathRay> rays, const ProbeReference& reference,
                               const pathtracer::Scene& scene) {
   std::vector<AffineMap> maps;
-  for (const Placement& placement : placements(trial.arrangement, scene)) maps.push_back(map_of(placement.transform));
-  const std::vector<ProbeInstance> instances = reference.instances(trial.arrangement);
+  for (const Placement& placement : placements(trial.instance_setup, scene))
+    maps.push_back(map_of(placement.transform));
+  const std::vector<ProbeInstance> instances = reference.instances(trial.instance_setup);
   std::vector<ProbeRay> asked;
   asked.reserve(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -94,7 +95,7 @@ std::vector<ProbeRay> rays_of(const Trial& trial, std::span<const PathRay> rays,
                                                   .direction = glm::vec3(map.linear * glm::dvec3(ray.direction)),
                                                   .t_max = ray.t_max});
     if (trial.window == Window::whole) continue;
-    if (const std::optional<Encounter> first = first_of(reference.hits(trial, instances, moved)))
+    if (const std::optional<Intersection> first = first_of(reference.hits(trial, instances, moved)))
       cut(moved, trial.window, *first);
   }
   return asked;

@@ -84,11 +84,11 @@ double mapped_magnitude(const AffineMap& map, const glm::dvec3& point) {
 ProbeReference::ProbeReference(const pathtracer::Scene& scene)
     : scene_(scene), triangles_(bounds_of_triangles(scene)), spheres_(bounds_of_spheres(scene)) {}
 
-std::vector<ProbeInstance> ProbeReference::instances(Arrangement arrangement) const {
+std::vector<ProbeInstance> ProbeReference::instances(InstanceSetup instance_setup) const {
   std::vector<ProbeInstance> instances;
-  const bool at_build = is_transformed_at_build(arrangement);
+  const bool at_build = is_transformed_at_build(instance_setup);
   std::uint32_t number = 0;
-  for (const Placement& placement : placements(arrangement, scene_)) {
+  for (const Placement& placement : placements(instance_setup, scene_)) {
     const AffineMap map = map_of(placement.transform);
     for (const bool spheres : {false, true}) {
       if (spheres ? scene_.spheres.empty() || at_build : scene_.triangles.empty()) continue;
@@ -122,16 +122,17 @@ std::vector<ProbeHit> ProbeReference::hits(const Trial& trial, std::span<const P
                               .geometry = index % 2,
                               .primitive = index / 2};
       if (!is_let(trial, instance, id)) return bound;
-      for (Encounter encounter : meet_primitive(in_geometry, instance, index)) {
-        if (!(encounter.t_high >= ray.t_min && encounter.t_low <= ray.t_max) || encounter.t_low > bound) continue;
-        bool counts = encounter.certain && encounter.t_low > ray.t_min && encounter.t_high < ray.t_max;
+      for (Intersection intersection : meet_primitive(in_geometry, instance, index)) {
+        if (!(intersection.t_high >= ray.t_min && intersection.t_low <= ray.t_max) || intersection.t_low > bound)
+          continue;
+        bool counts = intersection.certain && intersection.t_low > ray.t_min && intersection.t_high < ray.t_max;
         if (!instance.spheres) {
-          if (encounter.front_face && is_culled(trial, instance, *encounter.front_face)) continue;
+          if (intersection.front_face && is_culled(trial, instance, *intersection.front_face)) continue;
           // Where rounding decides the facing, it decides about culling too.
-          counts = counts && encounter.front_face;
+          counts = counts && intersection.front_face;
         }
-        hits.push_back({.id = id, .encounter = encounter, .counts = counts});
-        if (counts) bound = std::min(bound, encounter.t_high);
+        hits.push_back({.id = id, .intersection = intersection, .counts = counts});
+        if (counts) bound = std::min(bound, intersection.t_high);
       }
       return bound;
     };
@@ -142,20 +143,21 @@ std::vector<ProbeHit> ProbeReference::hits(const Trial& trial, std::span<const P
                    .ulp = tolerated_ulp},
                   visit);
   }
-  std::erase_if(hits, [&](const ProbeHit& hit) { return hit.encounter.t_low > bound; });
+  std::erase_if(hits, [&](const ProbeHit& hit) { return hit.intersection.t_low > bound; });
   return hits;
 }
 
-std::vector<Encounter> ProbeReference::meet_primitive(const GeometryRay& ray, const ProbeInstance& instance,
-                                                      std::uint32_t index) const {
+std::vector<Intersection> ProbeReference::meet_primitive(const GeometryRay& ray, const ProbeInstance& instance,
+                                                         std::uint32_t index) const {
   if (instance.spheres) return meet(ray, scene_.spheres[index]);
   Corners corners;
   for (std::size_t i = 0; i < 3; ++i) corners[i] = glm::dvec3(scene_.positions[scene_.triangles[index].vertices[i]]);
-  std::optional<Encounter> encounter = meet(ray, corners);
-  if (!encounter) return {};
+  std::optional<Intersection> intersection = meet(ray, corners);
+  if (!intersection) return {};
   const bool flipped = rhi::has(instance.flags, rhi::InstanceFlags::triangle_flip_facing);
-  if (encounter->front_face && flipped != instance.mirrored_at_build) encounter->front_face = !*encounter->front_face;
-  return {*encounter};
+  if (intersection->front_face && flipped != instance.mirrored_at_build)
+    intersection->front_face = !*intersection->front_face;
+  return {*intersection};
 }
 
 }  // namespace tandem::compare

@@ -38,7 +38,7 @@ struct PrimitiveId {
 /// A surface that a ray of a trial may meet.
 struct ProbeHit {
   PrimitiveId id;
-  Encounter encounter;
+  Intersection intersection;
   bool counts = false;  ///< for certain: the ray meets it, and the trial lets it count
 };
 
@@ -61,16 +61,16 @@ class ProbeReference {
   /// The scene must outlive it.
   explicit ProbeReference(const pathtracer::Scene& scene);
 
-  /// The instances of an arrangement, in a top level's order.
-  std::vector<ProbeInstance> instances(Arrangement arrangement) const;
+  /// The instances of an instance_setup, in a top level's order.
+  std::vector<ProbeInstance> instances(InstanceSetup instance_setup) const;
 
   /// What a ray may meet first, in no order: no hit is behind one that counts.
   std::vector<ProbeHit> hits(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray) const;
 
  private:
   /// @param index of the scene's triangle or sphere
-  std::vector<Encounter> meet_primitive(const GeometryRay& ray, const ProbeInstance& instance,
-                                        std::uint32_t index) const;
+  std::vector<Intersection> meet_primitive(const GeometryRay& ray, const ProbeInstance& instance,
+                                           std::uint32_t index) const;
 
   const pathtracer::Scene& scene_;
   BoundingVolumes triangles_;

@@ -152,12 +152,12 @@ rhi::AccelerationStructureHandle ProbeStructures::build(const rhi::BottomLevelDe
   return structure;
 }
 
-std::vector<rhi::AccelerationStructureHandle> ProbeStructures::bottom_levels(Arrangement arrangement) const {
+std::vector<rhi::AccelerationStructureHandle> ProbeStructures::bottom_levels(InstanceSetup instance_setup) const {
   std::vector<rhi::AccelerationStructureHandle> structures;
   const auto add = [&](const rhi::BottomLevelDesc& desc) { structures.push_back(build(desc)); };
   const bool has_triangles = !scene_.triangles.empty(), has_spheres = !scene_.spheres.empty();
-  switch (arrangement) {
-    case Arrangement::refitted: {
+  switch (instance_setup) {
+    case InstanceSetup::refitted: {
       const Bounds bounds = pathtracer::bounds(scene_);
       const auto flags = rhi::BuildFlags::allow_update;
       const auto refit = [&](const rhi::BottomLevelDesc& first, const rhi::BottomLevelDesc& then) {
@@ -175,19 +175,19 @@ std::vector<rhi::AccelerationStructureHandle> ProbeStructures::bottom_levels(Arr
               spheres(boxes_, flags));
       return structures;
     }
-    case Arrangement::build_transform: {
-      const Transform transform = placements(arrangement, scene_).front().transform;
+    case InstanceSetup::build_transform: {
+      const Transform transform = placements(instance_setup, scene_).front().transform;
       if (has_triangles)
         add(triangles(positions_, true,
                       store_input(device_, std::vector<float>(transform.begin(), transform.end()), "probe: transform"),
                       rhi::BuildFlags::prefer_fast_trace));
       return structures;
     }
-    case Arrangement::without_indices:
+    case InstanceSetup::without_indices:
       if (has_triangles) add(triangles(soup_, false, nullptr, rhi::BuildFlags::prefer_fast_build));
       if (has_spheres) structures.push_back(plain_.back());
       return structures;
-    case Arrangement::compacted:
+    case InstanceSetup::compacted:
       if (has_triangles) add(triangles(positions_, true, nullptr, rhi::BuildFlags::allow_compaction));
       if (has_spheres) add(spheres(boxes_, rhi::BuildFlags::allow_compaction));
       for (rhi::AccelerationStructureHandle& structure : structures)
@@ -198,15 +198,15 @@ std::vector<rhi::AccelerationStructureHandle> ProbeStructures::bottom_levels(Arr
   }
 }
 
-ProbeStructures::Built ProbeStructures::build(Arrangement arrangement) {
-  Built built{.bottom_levels = bottom_levels(arrangement), .top_level = {}};
+ProbeStructures::Built ProbeStructures::build(InstanceSetup instance_setup) {
+  Built built{.bottom_levels = bottom_levels(instance_setup), .top_level = {}};
   std::vector<rhi::InstanceDesc> instances;
   std::uint32_t number = 0;
-  for (const Placement& placement : placements(arrangement, scene_)) {
+  for (const Placement& placement : placements(instance_setup, scene_)) {
     for (std::size_t i = 0; i < built.bottom_levels.size(); ++i) {
       const bool is_spheres = i == 1 || scene_.triangles.empty();
       rhi::InstanceDesc& instance = instances.emplace_back(rhi::make_instance(
-          *built.bottom_levels[i], is_transformed_at_build(arrangement) ? identity_transform : placement.transform));
+          *built.bottom_levels[i], is_transformed_at_build(instance_setup) ? identity_transform : placement.transform));
       instance.mask = placement.mask & 0xff;
       instance.flags = static_cast<std::uint32_t>(placement.flags) & 0xff;
       instance.custom_index = custom_index(number, is_spheres) & 0xffffff;
@@ -222,10 +222,10 @@ ProbeStructures::Built ProbeStructures::build(Arrangement arrangement) {
     return desc;
   };
   const rhi::CommandListHandle list = device_.create_command_list("build of " + desc.label);
-  if (arrangement == Arrangement::moved) {
+  if (instance_setup == InstanceSetup::moved) {
     desc.flags = rhi::BuildFlags::allow_update;
     std::vector<rhi::InstanceDesc> others;
-    const Transform away = placements(Arrangement::instances, scene_)[1].transform;
+    const Transform away = placements(InstanceSetup::instances, scene_)[1].transform;
     for (std::size_t i = 0; i < instances.size(); ++i) {
       rhi::InstanceDesc& other = others.emplace_back(rhi::make_instance(*built.bottom_levels[i], away));
       other.mask = 0;
@@ -242,10 +242,10 @@ ProbeStructures::Built ProbeStructures::build(Arrangement arrangement) {
   return built;
 }
 
-const rhi::AccelerationStructureHandle& ProbeStructures::top_level(Arrangement arrangement) {
-  const auto found = built_.find(arrangement);
+const rhi::AccelerationStructureHandle& ProbeStructures::top_level(InstanceSetup instance_setup) {
+  const auto found = built_.find(instance_setup);
   if (found != built_.end()) return found->second.top_level;
-  return built_.emplace(arrangement, build(arrangement)).first->second.top_level;
+  return built_.emplace(instance_setup, build(instance_setup)).first->second.top_level;
 }
 
 }  // namespace tandem::compare

@@ -4,22 +4,22 @@
 #include <map>
 #include <vector>
 
-#include "compare/probe/arrangement.hpp"
+#include "compare/probe/instance_setup.hpp"
 #include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::compare {
 
-/// The scene's acceleration structures on a device, in every arrangement. Even triangles and spheres are the primitives
-/// of an opaque geometry 0, odd ones those of a geometry 1 that is not opaque. Spheres stand where they are when the
-/// shutter opens.
+/// The scene's acceleration structures on a device, in every instance_setup. Even triangles and spheres are the
+/// primitives of an opaque geometry 0, odd ones those of a geometry 1 that is not opaque. Spheres stand where they are
+/// when the shutter opens.
 class ProbeStructures {
  public:
   /// Uploads the scene. The device must outlive this.
   ProbeStructures(rhi::Device& device, const pathtracer::Scene& scene);
 
   /// Built at the first call.
-  const rhi::AccelerationStructureHandle& top_level(Arrangement arrangement);
+  const rhi::AccelerationStructureHandle& top_level(InstanceSetup instance_setup);
   /// Centre and radius of each sphere; of one that does not exist where there are none, since no buffer is empty.
   const rhi::BufferHandle& spheres() const noexcept { return spheres_; }
 
@@ -33,14 +33,14 @@ class ProbeStructures {
                                  rhi::BuildFlags flags) const;
   rhi::BottomLevelDesc spheres(const rhi::BufferHandle& boxes, rhi::BuildFlags flags) const;
   rhi::AccelerationStructureHandle build(const rhi::BottomLevelDesc& desc) const;
-  std::vector<rhi::AccelerationStructureHandle> bottom_levels(Arrangement arrangement) const;
-  Built build(Arrangement arrangement);
+  std::vector<rhi::AccelerationStructureHandle> bottom_levels(InstanceSetup instance_setup) const;
+  Built build(InstanceSetup instance_setup);
 
   rhi::Device& device_;
   const pathtracer::Scene& scene_;
   rhi::BufferHandle positions_, indices_, soup_, boxes_, spheres_;
   std::vector<rhi::AccelerationStructureHandle> plain_;  ///< of triangles, then of spheres, where there are any
-  std::map<Arrangement, Built> built_;
+  std::map<InstanceSetup, Built> built_;
 };
 
 }  // namespace tandem::compare

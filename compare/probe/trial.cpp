@@ -5,7 +5,7 @@
 namespace tandem::compare {
 
 std::span<const Trial> trials() {
-  using enum Arrangement;
+  using enum InstanceSetup;
   static const Trial all[] = {
       {.name = "plain"},
       {.name = "terminate on first hit", .flags = ray_flag::terminate_on_first_hit, .any_hit = true},
@@ -22,23 +22,23 @@ std::span<const Trial> trials() {
       {.name = "from behind the hit", .window = Window::from_behind},
       {.name = "until before the hit", .window = Window::until_before},
       {.name = "until behind the hit", .window = Window::until_behind},
-      {.name = "turned instance", .arrangement = instances, .target = 1},
-      {.name = "mirrored instance", .arrangement = instances, .target = 2},
-      {.name = "sheared instance", .arrangement = instances, .target = 3},
+      {.name = "turned instance", .instance_setup = instances, .target = 1},
+      {.name = "mirrored instance", .instance_setup = instances, .target = 2},
+      {.name = "sheared instance", .instance_setup = instances, .target = 3},
       {.name = "mirrored, back faces culled",
-       .arrangement = instances,
+       .instance_setup = instances,
        .target = 2,
        .flags = ray_flag::cull_back_faces},
-      {.name = "instance mask", .arrangement = instances, .target = each_in_turn, .mask = 0x98},
-      {.name = "flipped facing", .arrangement = instance_flags, .target = 0, .flags = ray_flag::cull_back_faces},
-      {.name = "culling disabled", .arrangement = instance_flags, .target = 1, .flags = ray_flag::cull_back_faces},
-      {.name = "forced opaque", .arrangement = instance_flags, .target = 2, .acceptance = 0},
-      {.name = "forced non-opaque", .arrangement = instance_flags, .target = 3, .acceptance = accept_half},
-      {.name = "refitted bottom level", .arrangement = refitted},
-      {.name = "moved top level", .arrangement = moved},
-      {.name = "transform at build", .arrangement = build_transform},
-      {.name = "without indices", .arrangement = without_indices},
-      {.name = "compacted", .arrangement = compacted},
+      {.name = "instance mask", .instance_setup = instances, .target = each_in_turn, .mask = 0x98},
+      {.name = "flipped facing", .instance_setup = instance_flags, .target = 0, .flags = ray_flag::cull_back_faces},
+      {.name = "culling disabled", .instance_setup = instance_flags, .target = 1, .flags = ray_flag::cull_back_faces},
+      {.name = "forced opaque", .instance_setup = instance_flags, .target = 2, .acceptance = 0},
+      {.name = "forced non-opaque", .instance_setup = instance_flags, .target = 3, .acceptance = accept_half},
+      {.name = "refitted bottom level", .instance_setup = refitted},
+      {.name = "moved top level", .instance_setup = moved},
+      {.name = "transform at build", .instance_setup = build_transform},
+      {.name = "without indices", .instance_setup = without_indices},
+      {.name = "compacted", .instance_setup = compacted},
   };
   return all;
 }

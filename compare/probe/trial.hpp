@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "compare/probe/arrangement.hpp"
+#include "compare/probe/instance_setup.hpp"
 #include "rhi/device.hpp"
 
 namespace tandem::compare {
@@ -39,7 +39,7 @@ inline constexpr std::uint32_t accept_half = accept_all / 2;
 /// One way of asking: the same rays, moved along with the instance that they are aimed at.
 struct Trial {
   const char* name = "";
-  Arrangement arrangement = Arrangement::plain;
+  InstanceSetup instance_setup = InstanceSetup::plain;
   std::uint32_t target = 0;  ///< the placement that rays are aimed at, or each_in_turn
   std::uint32_t flags = ray_flag::none;
   std::uint32_t mask = 0xff;

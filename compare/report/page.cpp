@@ -61,7 +61,7 @@ std::string filled(std::string_view text, const std::vector<std::pair<std::strin
   }
 }
 
-ordered_json partings_json(const Classification& classification, const Ranking& ranking) {
+ordered_json divergences_json(const Classification& classification, const Ranking& ranking) {
   std::vector<glm::uvec2> ranked;
   for (const RankedPixel& pixel : ranking.pixels) ranked.push_back(pixel.pixel);
   const auto before = [](const glm::uvec2& first, const glm::uvec2& second) {
@@ -71,16 +71,16 @@ ordered_json partings_json(const Classification& classification, const Ranking& 
   ordered_json json = ordered_json::array();
   for (const ClassifiedPath& path : classification.paths) {
     if (!std::ranges::binary_search(ranked, path.path.pixel, before)) continue;
-    for (const Parting& parting : path.partings) {
+    for (const Divergence& divergence : path.divergences) {
       json.push_back({{"x", path.path.pixel.x},
                       {"y", path.path.pixel.y},
                       {"sample", path.path.sample},
-                      {"class", name(parting.difference_class)},
-                      {"segment", parting.segment},
-                      {"event", name(parting.a.kind())},
-                      {"field", parting.field != nullptr ? ordered_json(parting.field->name) : ordered_json()},
-                      {"ulp", parting.ulp_distance},
-                      {"sentence", parting.sentence}});
+                      {"class", name(divergence.difference_class)},
+                      {"segment", divergence.segment},
+                      {"event", name(divergence.a.kind())},
+                      {"field", divergence.field != nullptr ? ordered_json(divergence.field->name) : ordered_json()},
+                      {"ulp", divergence.ulp_distance},
+                      {"sentence", divergence.sentence}});
     }
   }
   return json;
@@ -101,14 +101,14 @@ ordered_json classification_json(const Classification& classification, const Ran
                        {"traced_paths", classification.traced_paths},
                        {"differing_paths", classification.differing_paths},
                        {"pixels", ordered_json::object()},
-                       {"partings", ordered_json::object()}};
+                       {"divergences", ordered_json::object()}};
   for (std::size_t i = 0; i < difference_class_count; ++i) {
     const char* const class_name = name(static_cast<DifferenceClass>(i));
     json["pixels"][class_name] = classification.pixel_counts[i];
-    json["partings"][class_name] = classification.parting_counts[i];
+    json["divergences"][class_name] = classification.divergence_counts[i];
   }
-  json["found"] = packed(
-      dump({{"partings", partings_json(classification, ranking)}, {"wrong_sums", wrong_sums_json(classification)}}));
+  json["found"] = packed(dump(
+      {{"divergences", divergences_json(classification, ranking)}, {"wrong_sums", wrong_sums_json(classification)}}));
   return json;
 }
 

@@ -32,7 +32,7 @@ double pixels(const Tile& tile) { return static_cast<double>(tile.width) * tile.
 
 /// How much darker chance may make a tile is not seen in its own noise where the rare events that light it have not
 /// happened. So the error of each tile is enlarged by that of so many further events of the size usual in the picture.
-/// With 20, light paths that find the lamp by chance failed no more often than the p-value says; in ordinary pictures,
+/// With 20, light paths that find the light by chance failed no more often than the p-value says; in ordinary pictures,
 /// whose tiles gather thousands of events, it changes nothing (docs/guide/statistics.md).
 constexpr double further_events = 20;
 

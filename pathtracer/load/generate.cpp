@@ -71,7 +71,7 @@ Kd 0.3 0.6 0.35
 constexpr std::uint64_t sphere_materials = 4;
 
 constexpr std::uint64_t grid = 3;  ///< spheres along each axis
-/// The grid ends well below the ceiling: a sphere close to the lamp would leave the room dark.
+/// The grid ends well below the ceiling: a sphere close to the light would leave the room dark.
 constexpr glm::dvec3 grid_size{549.6, 420, 559.2};
 constexpr double radius = 58;
 /// Largest relative displacement: 58 * 1.18 stays inside a cell of the grid (420 / 3 / 2).

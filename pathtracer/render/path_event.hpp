@@ -68,12 +68,12 @@ static_assert(sizeof(PathEvent) == 128);
 namespace event_word {
 inline constexpr std::size_t depth = 2;                         ///< segment
 inline constexpr std::size_t segment_origin = 4;                ///< segment
-inline constexpr std::size_t segment_scatterer_density = 7;     ///< segment
+inline constexpr std::size_t segment_previous_density = 7;      ///< segment
 inline constexpr std::size_t segment_direction = 8;             ///< segment
-inline constexpr std::size_t segment_squeezing = 11;            ///< segment
+inline constexpr std::size_t segment_eta_scale = 11;            ///< segment
 inline constexpr std::size_t segment_throughput = 12;           ///< segment
 inline constexpr std::size_t segment_radiance = 16;             ///< segment
-inline constexpr std::size_t segment_scatterer_position = 20;   ///< segment
+inline constexpr std::size_t segment_previous_position = 20;    ///< segment
 inline constexpr std::size_t ray_kind = 2;                      ///< ray: RayKind
 inline constexpr std::size_t ray_dimension = 3;                 ///< ray
 inline constexpr std::size_t ray_origin = 4;                    ///< ray

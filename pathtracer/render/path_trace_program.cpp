@@ -93,9 +93,9 @@ Features task_features(Features needed, PathTraceTask task) {
   return feature::all;
 }
 
-PathTraceProgram::PathTraceProgram(rhi::Device& device, TraceForm form, Features features, PathTraceTask task)
+PathTraceProgram::PathTraceProgram(rhi::Device& device, TracingMode form, Features features, PathTraceTask task)
     : form_(form), features_(task_features(features, task)) {
-  if (form == TraceForm::query) {
+  if (form == TracingMode::query) {
     compute_ = compute_pipeline(device, compute_shader(task), features_);
     pipeline_ = compute_;
   } else {
@@ -108,7 +108,7 @@ void PathTraceProgram::record(rhi::CommandList& list, const std::vector<rhi::Bin
                               const DispatchConstants& constants) const {
   const std::span<const std::byte> push_constants = std::as_bytes(std::span(&constants, 1));
   const glm::uvec2 size = constants.tile_size;
-  if (form_ == TraceForm::pipeline) {
+  if (form_ == TracingMode::pipeline) {
     rhi::TraceRaysDesc desc;
     desc.table = table_;
     desc.bind_groups = bind_groups;

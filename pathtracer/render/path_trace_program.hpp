@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include "pathtracer/render/features.hpp"
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "pathtracer/scene/buffers.hpp"
 #include "rhi/device.hpp"
 
@@ -26,7 +26,8 @@ Features task_features(Features features, PathTraceTask task);
 class PathTraceProgram {
  public:
   /// @param features what the scene and the settings need; what is built in may have more (built_features)
-  PathTraceProgram(rhi::Device& device, TraceForm form, Features features, PathTraceTask task = PathTraceTask::picture);
+  PathTraceProgram(rhi::Device& device, TracingMode form, Features features,
+                   PathTraceTask task = PathTraceTask::picture);
 
   /// For which bind groups are made.
   const rhi::PipelineHandle& pipeline() const noexcept { return pipeline_; }
@@ -36,7 +37,7 @@ class PathTraceProgram {
               const DispatchConstants& constants) const;
 
  private:
-  TraceForm form_;
+  TracingMode form_;
   Features features_;
   rhi::PipelineHandle pipeline_;
   rhi::ComputePipelineHandle compute_;  ///< of the form query

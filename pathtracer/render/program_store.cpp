@@ -6,7 +6,7 @@ namespace tandem::pathtracer {
 
 ProgramStore::ProgramStore(rhi::DeviceHandle device) : device_(std::move(device)) {}
 
-const PathTraceProgram& ProgramStore::program(TraceForm form, Features features, PathTraceTask task) {
+const PathTraceProgram& ProgramStore::program(TracingMode form, Features features, PathTraceTask task) {
   // Programs of several features may be the same one of a task.
   const auto key = std::tuple(form, task_features(features, task), task);
   const auto known = programs_.find(key);

@@ -16,11 +16,11 @@ class ProgramStore {
   explicit ProgramStore(rhi::DeviceHandle device);
 
   /// @param features that are built in (built_features)
-  const PathTraceProgram& program(TraceForm form, Features features, PathTraceTask task);
+  const PathTraceProgram& program(TracingMode form, Features features, PathTraceTask task);
 
  private:
   rhi::DeviceHandle device_;
-  std::map<std::tuple<TraceForm, Features, PathTraceTask>, PathTraceProgram> programs_;
+  std::map<std::tuple<TracingMode, Features, PathTraceTask>, PathTraceProgram> programs_;
 };
 
 using ProgramStoreHandle = std::shared_ptr<ProgramStore>;

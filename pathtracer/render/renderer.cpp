@@ -31,12 +31,12 @@ std::string text_of(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.
 }  // namespace
 
 Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
-                   std::optional<TraceForm> trace, ProgramStoreHandle programs)
+                   std::optional<TracingMode> trace, ProgramStoreHandle programs)
     : device_(std::move(device)),
       programs_(programs ? std::move(programs) : std::make_shared<ProgramStore>(device_)),
       scene_name_(scene.name),
       camera_(checked_camera(scene, settings)),
-      trace_(choose_trace_form(device_->info(), trace)),
+      trace_(choose_tracing_mode(device_->info(), trace)),
       scene_(*device_, scene) {
   if (device_->info().capabilities.timestamps)
     timestamps_ = device_->create_query_pool({.count = 2, .label = "dispatch times"});

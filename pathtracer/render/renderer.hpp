@@ -14,8 +14,8 @@
 #include "pathtracer/render/path_event.hpp"
 #include "pathtracer/render/program_store.hpp"
 #include "pathtracer/render/render_settings.hpp"
-#include "pathtracer/render/trace_form.hpp"
 #include "pathtracer/render/traced_ray.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "pathtracer/scene/camera.hpp"
 #include "pathtracer/scene/scene.hpp"
 #include "rhi/device.hpp"
@@ -33,10 +33,10 @@ class Renderer {
  public:
   /// Uploads the scene and builds its acceleration structures. Throws Error for bad settings, rhi::Error for what the
   /// device refuses (a form of tracing that it lacks, a scene or picture that is too large).
-  /// @param trace as choose_trace_form takes it
+  /// @param trace as choose_tracing_mode takes it
   /// @param programs of the same device, to share with other renderers; absent: an own one
   Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
-           std::optional<TraceForm> trace = {}, ProgramStoreHandle programs = {});
+           std::optional<TracingMode> trace = {}, ProgramStoreHandle programs = {});
 
   /// Makes what only render needs, as render would otherwise when it is first called: the program that renders. Throws
   /// rhi::Error for a picture that is too large for the device.
@@ -63,7 +63,7 @@ class Renderer {
   double build_milliseconds() const noexcept { return build_milliseconds_; }
 
   const RenderSettings& settings() const noexcept { return settings_; }
-  TraceForm trace() const noexcept { return trace_; }
+  TracingMode trace() const noexcept { return trace_; }
   const Camera& camera() const noexcept { return camera_; }                        ///< the one in use
   glm::vec3 background() const noexcept { return background_; }                    ///< the one in use
   const std::vector<std::string>& warnings() const noexcept { return warnings_; }  ///< choices the user may not expect
@@ -104,7 +104,7 @@ class Renderer {
   ProgramStoreHandle programs_;
   std::string scene_name_;
   Camera camera_;
-  TraceForm trace_;
+  TracingMode trace_;
   DeviceScene scene_;
   RenderSettings settings_;
   Features features_ = ~Features{0};  ///< that are built in, for the scene and the settings

@@ -14,7 +14,7 @@ enum class RayKind : std::uint32_t {
 };
 
 /// In TracedRay::answer of a closest ray: it meets nothing.
-inline constexpr std::uint32_t no_triangle = 0xffffffffu;
+inline constexpr std::uint32_t no_primitive = 0xffffffffu;
 
 /// A ray in world space, and what a device said of it.
 struct TracedRay {
@@ -22,9 +22,9 @@ struct TracedRay {
   float t_max = 0;  ///< in lengths of the direction
   glm::vec3 direction{0};
   RayKind kind = RayKind::closest;
-  /// Closest: the triangle (in_device_order), or the number of triangles + the sphere, or no_triangle; occlusion: 1 or
+  /// Closest: the triangle (in_device_order), or the number of triangles + the sphere, or no_primitive; occlusion: 1 or
   /// 0.
-  std::uint32_t answer = no_triangle;
+  std::uint32_t answer = no_primitive;
   /// What decides which transparent triangles the ray meets; see shaders/random.glsl.
   std::uint32_t random_pixel = 0;
   std::uint32_t random_sample = 0;

@@ -1,4 +1,4 @@
-// Next event estimation: light that comes from a lamp straight to a vertex.
+// Next event estimation: light that comes from a light straight to a vertex.
 
 #ifndef TANDEM_INTEGRATOR_DIRECT_LIGHT
 #define TANDEM_INTEGRATOR_DIRECT_LIGHT

@@ -147,13 +147,13 @@ void event_camera(uvec2 pixel, uint sample_index, float time, vec3 origin, vec3 
 
 /// Whether the segment is to be traced. All before it is written down.
 bool event_segment(uint depth, uint crossings, vec3 origin, vec3 direction, float ray_length, vec3 throughput,
-                   vec3 radiance, float squeezing, uint medium, vec3 scatterer_position, float scatterer_density,
+                   vec3 radiance, float eta_scale, uint medium, vec3 previous_position, float previous_density,
                    uint diffuse_count, uint glossy_count, uint specular_count) {
   flush_events();
   recorded_segment = depth + crossings;
-  write_event(PLACE_SEGMENT, EVENT_SEGMENT, uvec2(depth, crossings), event_words(origin, scatterer_density),
-              event_words(direction, squeezing), event_words(throughput, medium), event_words(radiance, ray_length),
-              event_words(scatterer_position, diffuse_count), uvec4(glossy_count, specular_count, 0, 0), uvec4(0));
+  write_event(PLACE_SEGMENT, EVENT_SEGMENT, uvec2(depth, crossings), event_words(origin, previous_density),
+              event_words(direction, eta_scale), event_words(throughput, medium), event_words(radiance, ray_length),
+              event_words(previous_position, diffuse_count), uvec4(glossy_count, specular_count, 0, 0), uvec4(0));
   recorded_segment_count += 1;
   return recorded_segment_count <= path_starts[recorded_path].segment_count;
 }

@@ -1,4 +1,4 @@
-// Multiple importance sampling (Veach 1997, chapter 9): light from a lamp in some direction is estimated once by the
+// Multiple importance sampling (Veach 1997, chapter 9): light from a light in some direction is estimated once by the
 // sampling of lights and once by that of the BSDF, and each estimate is weighted by how likely it was to be made.
 
 #ifndef TANDEM_INTEGRATOR_MIS
@@ -24,7 +24,7 @@ precise float light_sample_weight(float light, float bsdf) {
   return heuristic(light, bsdf);
 }
 
-/// Of a lamp, or the environment, that a scattered ray met. `bsdf` is the density of the ray, `light` that with which
+/// Of a light, or the environment, that a scattered ray met. `bsdf` is the density of the ray, `light` that with which
 /// next event estimation takes its direction, either of them 0 where that could not.
 precise float scattered_weight(float bsdf, float light) {
   if (!(bsdf > 0.0 && light > 0.0)) return 1.0;

@@ -1,5 +1,5 @@
 // The integrator: unidirectional path tracing with next event estimation at every vertex that scatters by a density,
-// weighted against the lamps that scattered rays run into (multiple importance sampling), and Russian roulette.
+// weighted against the lights that scattered rays run into (multiple importance sampling), and Russian roulette.
 // options.glsl says what of this can be changed.
 
 #ifndef TANDEM_INTEGRATOR_PATH
@@ -20,7 +20,7 @@
 const uint ROULETTE_DEPTH = 3;
 const float ROULETTE_SURVIVAL = 0.95;
 
-/// How the ray of a path came to be: what decides how much a lamp counts that it meets.
+/// How the ray of a path came to be: what decides how much a light counts that it meets.
 struct Origin {
   vec3 position;  // of the vertex that scattered it
   float density;  // per solid angle; 0 if next event estimation could not have found its direction
@@ -65,7 +65,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
 
   precise vec3 radiance = vec3(0.0);
   precise vec3 throughput = vec3(1.0);
-  precise float squeezing = 1.0;  // the product of eta^2 since the camera; the throughput holds its inverse
+  precise float eta_scale = 1.0;  // the product of eta^2 since the camera; the throughput holds its inverse
   uint medium = render.medium;
   precise Origin scatterer;
   scatterer.position = origin;
@@ -83,7 +83,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     origin = state_vector(4);
     scatterer.density = state_number(7);
     direction = state_vector(8);
-    squeezing = state_number(11);
+    eta_scale = state_number(11);
     throughput = state_vector(12);
     medium = state_word(15);
     radiance = state_vector(16);
@@ -97,7 +97,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
   for (uint depth = PATH_FIRST_DEPTH; depth < max_depth; ++depth) {
     uint segment = depth + crossings;
     TANDEM_RECORD(end_reason = END_LIMIT;)
-    TANDEM_RECORD(if (!event_segment(depth, crossings, origin, direction, ray_length, throughput, radiance, squeezing,
+    TANDEM_RECORD(if (!event_segment(depth, crossings, origin, direction, ray_length, throughput, radiance, eta_scale,
                                      medium, scatterer.position, scatterer.density, scattering_count.diffuse,
                                      scattering_count.glossy, scattering_count.specular)) break;)
     TANDEM_RECORD(end_reason = END_DEPTH;)
@@ -210,9 +210,9 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     throughput = drop_negligible(throughput * scattered.weight);
     TANDEM_RECORD(end_reason = END_ABSORBED;)
     if (max_component(throughput) == 0.0) break;
-    squeezing *= scattered.eta * scattered.eta;
+    eta_scale *= scattered.eta * scattered.eta;
     if (depth >= ROULETTE_DEPTH && option_roulette()) {
-      precise float survival = max_component(throughput) * squeezing;
+      precise float survival = max_component(throughput) * eta_scale;
       survival = survival < ROULETTE_SURVIVAL ? survival : ROULETTE_SURVIVAL;
       TANDEM_RECORD(event_roulette(bits.w, survival, unit_interval(bits.w) < survival);)
       TANDEM_RECORD(end_reason = END_ROULETTE;)

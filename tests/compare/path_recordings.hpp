@@ -22,7 +22,7 @@ inline pathtracer::PathEvent segment_event(std::uint32_t segment, const glm::vec
   result.set(word::segment_origin, origin);
   result.set(word::segment_direction, direction);
   result.set(word::segment_throughput, glm::vec3(0.5f, 0.25f, 0));
-  result.set(word::segment_squeezing, 1.0f);
+  result.set(word::segment_eta_scale, 1.0f);
   return result;
 }
 
@@ -35,7 +35,7 @@ inline pathtracer::PathEvent ray_event(const glm::vec3& origin, const glm::vec3&
   result.set(word::ray_direction, direction);
   result.set(word::ray_t_max, kind == pathtracer::RayKind::closest ? 1e30f : 1.0f);
   result.words[word::ray_answer] = answer;
-  const bool hit = kind == pathtracer::RayKind::closest && answer != pathtracer::no_triangle;
+  const bool hit = kind == pathtracer::RayKind::closest && answer != pathtracer::no_primitive;
   result.words[word::hit_kind] =
       static_cast<std::uint32_t>(hit ? pathtracer::HitKind::front : pathtracer::HitKind::none);
   if (hit) result.set(word::hit_t, t);

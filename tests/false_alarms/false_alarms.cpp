@@ -95,11 +95,11 @@ void print(const std::string& name, const Tally& tally) {
 void print_mismatches(const std::filesystem::path& path, std::uint32_t seed, const compare::Classification& found) {
   std::size_t left = 3;
   for (const compare::ClassifiedPath& classified : found.paths) {
-    for (const compare::Parting& parting : classified.partings) {
-      if (parting.difference_class != compare::DifferenceClass::mismatch || left == 0) continue;
+    for (const compare::Divergence& divergence : classified.divergences) {
+      if (divergence.difference_class != compare::DifferenceClass::mismatch || left == 0) continue;
       --left;
       fmt::print("  {} seed {} pixel {},{} sample {}: {}\n", path.filename().string(), seed, classified.path.pixel.x,
-                 classified.path.pixel.y, classified.path.sample, parting.sentence);
+                 classified.path.pixel.y, classified.path.sample, divergence.sentence);
     }
   }
 }
@@ -129,7 +129,7 @@ Tally examine(const std::filesystem::path& path, const Options& options, const D
     Tally one{.pixels = image_a.pixels.size(),
               .differing = found.differing_pixels,
               .alarms = verdict.agree ? 0u : 1u,
-              .counts = found.parting_counts};
+              .counts = found.divergence_counts};
     tally.add(one);
     if (verdict.agree) continue;
     for (const std::string& reason : verdict.reasons)

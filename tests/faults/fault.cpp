@@ -67,7 +67,7 @@ DeviceEdits shader_edits(ShaderEdit edit) {
 }
 
 std::vector<Fault> no_faults() {
-  FaultList query, pipeline(pathtracer::TraceForm::pipeline);
+  FaultList query, pipeline(pathtracer::TracingMode::pipeline);
   query.add_harmless("none", "all that it should", plain_scene, {}, Finder::nobody);
   query.add_harmless("none-transparent", "likewise", transparent_scene, {}, Finder::nobody);
   query.add_harmless("none-compiled-anew", "likewise, by shaders that were taken apart and put together", plain_scene,

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "tests/faults/device_edits.hpp"
 #include "tests/faults/shader_edits.hpp"
 
@@ -27,7 +27,7 @@ struct Fault {
   std::string name;     ///< a few words with hyphens
   std::string meaning;  ///< what the device does, in a few words more
   std::string scene;    ///< a file of scenes/, which the fault shows in
-  pathtracer::TraceForm form = pathtracer::TraceForm::query;
+  pathtracer::TracingMode form = pathtracer::TracingMode::query;
   DeviceEdits edits;
 
   // What must be said of it.
@@ -41,7 +41,7 @@ struct Fault {
 /// Makes lists of faults.
 class FaultList {
  public:
-  explicit FaultList(pathtracer::TraceForm form = pathtracer::TraceForm::query) : form_(form) {}
+  explicit FaultList(pathtracer::TracingMode form = pathtracer::TracingMode::query) : form_(form) {}
 
   /// A fault that a path shows at a field of an event.
   void add(std::string name, std::string meaning, std::string scene, DeviceEdits edits, std::string event,
@@ -60,7 +60,7 @@ class FaultList {
  private:
   Fault& append(std::string name, std::string meaning, std::string scene, DeviceEdits edits, Finder finder);
 
-  pathtracer::TraceForm form_;
+  pathtracer::TracingMode form_;
   std::vector<Fault> faults_;
 };
 

@@ -125,18 +125,18 @@ std::string check_against_recordings(const compare::ClassifiedPath& path, pathtr
   const std::vector<pathtracer::PathStart> start = {{.path = path.path}};
   const pathtracer::PathEvents events_a = a.record_paths(start).front();
   const pathtracer::PathEvents events_b = b.record_paths(start).front();
-  const compare::Parting& parting = path.partings.front();
+  const compare::Divergence& divergence = path.divergences.front();
   const std::string place =
       fmt::format("pixel {},{} sample {}", path.path.pixel.x, path.path.pixel.y, path.path.sample);
-  if (parting.field != nullptr && parting.field->tier == compare::FieldTier::observed) {
+  if (divergence.field != nullptr && divergence.field->tier == compare::FieldTier::observed) {
     const auto observed = compare::observed_differences(compare::pair_events(events_a, events_b));
     return observed.differing > 0 ? "" : place + " shows the same hits in both recordings";
   }
   const std::size_t first = first_difference(events_a, events_b);
   if (first >= events_a.size()) return place + " does not part in a's recording";
-  if (parting.event_index != first || parting.segment != segment_of(events_a[first]))
-    return fmt::format("{} parts at event {}, not at event {} of segment {}", place, first, parting.event_index,
-                       parting.segment);
+  if (divergence.event_index != first || divergence.segment != segment_of(events_a[first]))
+    return fmt::format("{} parts at event {}, not at event {} of segment {}", place, first, divergence.event_index,
+                       divergence.segment);
   return is_explained(events_a, events_b, first) ? "" : place + " is explained by another event or field";
 }
 
@@ -147,15 +147,15 @@ bool same_recordings(pathtracer::Renderer& a, pathtracer::Renderer& b) {
 
 /// Takes what a classification says into the finding. Of a fault that does harm only mismatches are of interest, of
 /// another whatever differs.
-/// @param counts whether a parting of this class counts
+/// @param counts whether a divergence of this class counts
 void take(const compare::Classification& found, bool mismatches_only, Finding& finding) {
   Tally tally;
   for (const compare::ClassifiedPath& path : found.paths) {
-    for (const compare::Parting& parting : path.partings) worsen(finding, parting.difference_class);
-    const auto first = std::ranges::find_if(path.partings, [&](const compare::Parting& parting) {
-      return !mismatches_only || parting.difference_class == DifferenceClass::mismatch;
+    for (const compare::Divergence& divergence : path.divergences) worsen(finding, divergence.difference_class);
+    const auto first = std::ranges::find_if(path.divergences, [&](const compare::Divergence& divergence) {
+      return !mismatches_only || divergence.difference_class == DifferenceClass::mismatch;
     });
-    if (first == path.partings.end()) continue;
+    if (first == path.divergences.end()) continue;
     tally.add(compare::name(first->a.kind()), first->field != nullptr ? first->field->name : "kind", first->segment,
               first->sentence);
   }
@@ -212,7 +212,7 @@ FaultRunner::FaultRunner(rhi::DeviceHandle device, rhi::DeviceHandle arbiter)
     : device_(std::move(device)), arbiter_(std::move(arbiter)) {}
 FaultRunner::~FaultRunner() = default;
 
-FaultRunner::Reference& FaultRunner::reference(const std::string& scene, pathtracer::TraceForm form) {
+FaultRunner::Reference& FaultRunner::reference(const std::string& scene, pathtracer::TracingMode form) {
   std::unique_ptr<Reference>& known = references_[{scene, form}];
   if (known) return *known;
   pathtracer::Scene loaded = pathtracer::load_scene(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes" / scene);
@@ -247,10 +247,10 @@ Finding FaultRunner::run(const Fault& fault) {
   take(found, fault.harmful, finding);
   for (const compare::ClassifiedPath& path : found.paths) {
     if (!finding.problem.empty()) break;
-    if (!path.partings.empty()) finding.problem = check_against_recordings(path, truth.a, b);
+    if (!path.divergences.empty()) finding.problem = check_against_recordings(path, truth.a, b);
   }
   if (finding.found_by == Finder::nobody && !fault.harmful && !same_recordings(truth.a, b)) {
-    // What devices may report otherwise is no parting.
+    // What devices may report otherwise is no divergence.
     finding.found_by = Finder::survey;
     finding.worst = DifferenceClass::rounding;
   }

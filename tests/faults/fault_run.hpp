@@ -40,10 +40,10 @@ class FaultRunner {
 
  private:
   struct Reference;
-  Reference& reference(const std::string& scene, pathtracer::TraceForm form);
+  Reference& reference(const std::string& scene, pathtracer::TracingMode form);
 
   rhi::DeviceHandle device_, arbiter_;
-  std::map<std::pair<std::string, pathtracer::TraceForm>, std::unique_ptr<Reference>> references_;
+  std::map<std::pair<std::string, pathtracer::TracingMode>, std::unique_ptr<Reference>> references_;
 };
 
 }  // namespace tandem::test

@@ -24,9 +24,9 @@ struct Shader {
 };
 
 /// What renders a picture: whatever can be wrong with a path can be wrong here.
-std::vector<Shader> picture_shaders(pathtracer::TraceForm form) {
+std::vector<Shader> picture_shaders(pathtracer::TracingMode form) {
   using rhi::ShaderStage;
-  if (form == pathtracer::TraceForm::query) return {{shaders::path_trace(), ShaderStage::compute}};
+  if (form == pathtracer::TracingMode::query) return {{shaders::path_trace(), ShaderStage::compute}};
   return {{shaders::path_trace_rgen(), ShaderStage::ray_generation},
           {shaders::path_trace_rmiss(), ShaderStage::miss},
           {shaders::path_trace_rchit(), ShaderStage::closest_hit},

@@ -21,7 +21,7 @@ std::uint32_t zero(CodeWriter& code, std::uint32_t) { return code.module().const
 
 std::vector<Fault> pipeline_faults() {
   using rhi::ShaderStage;
-  FaultList faults(pathtracer::TraceForm::pipeline);
+  FaultList faults(pathtracer::TracingMode::pipeline);
   faults.add("ignore-intersection-ignored", "ignoreIntersectionEXT does nothing", transparent_scene,
              in_stage(ShaderStage::any_hit, without(spv::OpIgnoreIntersectionKHR, spv::OpReturn)), "ray", {"answer"});
   faults.add("any-hit-sees-first-geometry", "gl_GeometryIndexEXT is 0 in any-hit shaders", transparent_scene,

@@ -53,7 +53,7 @@ void add_triangle(Scene& scene, const glm::vec3& a, const glm::vec3& b, const gl
   scene.triangles.push_back({{first, first + 1, first + 2}, material});
 }
 
-/// The lamp of Lambert's formula: a rectangle in general position.
+/// The light of Lambert's formula: a rectangle in general position.
 const glm::vec3 rectangle[4] = {{-1, 2, -0.5f}, {1, 2.5f, -0.5f}, {1, 2.5f, 1.5f}, {-1, 2, 1.5f}};
 
 Scene rectangle_scene(float radiance) {

@@ -86,9 +86,9 @@ TANDEM_DEVICE_TEST(
 }
 
 TANDEM_DEVICE_TEST("Shadow rays go through boundaries and lose what their medium absorbs") {
-  // A small lamp far above a floor, and a slab of the medium between them; the ratio to the same scene without
-  // absorption is the transmittance, since all else is the same. The lamp is 0.02 wide at 10 units: no ray is longer
-  // within the slab by more than 1e-5, where it is not scattered into the lamp, which happens to one in 10^6.
+  // A small light far above a floor, and a slab of the medium between them; the ratio to the same scene without
+  // absorption is the transmittance, since all else is the same. The light is 0.02 wide at 10 units: no ray is longer
+  // within the slab by more than 1e-5, where it is not scattered into the light, which happens to one in 10^6.
   test::TestScene scene;
   scene.media.resize(1);
   scene.add_quad({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, scene.add_material(test::diffuse(glm::vec3(0.5f))));
@@ -111,7 +111,7 @@ TANDEM_DEVICE_TEST("Shadow rays go through boundaries and lose what their medium
         ratio ==
         doctest::Approx(std::exp(-static_cast<double>(scene.media[0].absorption[static_cast<int>(c)]))).epsilon(1e-4));
   }
-  // Around everything too: the lamp's light comes 10 units, the camera's sqrt(2).
+  // Around everything too: the light's light comes 10 units, the camera's sqrt(2).
   constants.medium = 0;
   const test::Rendering around = test::path_trace(device, pipeline, test::upload(device, scene), {constants});
   const double ratio = mean_of_pixels(around, 0, 1).value / mean_of_pixels(clear, 0, 1).value;
@@ -140,9 +140,9 @@ TANDEM_DEVICE_TEST("A medium that only scatters is invisible under a uniform sky
 }
 
 TANDEM_DEVICE_TEST("Light scattered once is the integral over the ray, by every technique") {
-  // A lamp fills half of all directions, so what an isotropic medium scatters once along a ray of length 2 is half of
-  // 1 - exp(-2 sigma) of the lamp's radiance, but for what is lost on the way to the lamp: sigma is 0.01, the way below
-  // 2 on average.
+  // A light fills half of all directions, so what an isotropic medium scatters once along a ray of length 2 is half of
+  // 1 - exp(-2 sigma) of the light's radiance, but for what is lost on the way to the light: sigma is 0.01, the way
+  // below 2 on average.
   test::TestScene scene;
   scene.media.push_back({.scattering = glm::vec3(0.01f)});
   scene.add_box({-1, -1, -3}, {1, 1, -1}, scene.add_material(boundary(0)));
@@ -165,7 +165,7 @@ TANDEM_DEVICE_TEST("Light scattered once is the integral over the ray, by every 
   }
 }
 
-TANDEM_DEVICE_TEST("All techniques light a thick medium with a lamp inside a box alike") {
+TANDEM_DEVICE_TEST("All techniques light a thick medium with a light inside a box alike") {
   test::TestScene scene;
   scene.media.push_back({.absorption = {0.3f, 0.1f, 0.0f}, .anisotropy = 0.6f, .scattering = {1.0f, 0.5f, 2.0f}});
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(0.5f)));

@@ -16,11 +16,11 @@ namespace feature = pathtracer::feature;
 
 namespace {
 
-/// A closed room around the origin with a lamp under its ceiling; one wall may be of another material.
+/// A closed room around the origin with a light under its ceiling; one wall may be of another material.
 test::TestScene room(const pathtracer::GpuMaterial& wall) {
   test::TestScene scene;
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(0.7f, 0.6f, 0.5f)));
-  const std::uint32_t lamp = scene.add_material(test::diffuse(glm::vec3(0.2f), glm::vec3(12, 10, 8)));
+  const std::uint32_t light = scene.add_material(test::diffuse(glm::vec3(0.2f), glm::vec3(12, 10, 8)));
   const std::uint32_t other = scene.add_material(wall);
   scene.add_quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, white);
   scene.add_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);
@@ -28,7 +28,7 @@ test::TestScene room(const pathtracer::GpuMaterial& wall) {
   scene.add_quad({1, -1, 1}, {-2, 0, 0}, {0, 2, 0}, white);
   scene.add_quad({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, white);
   scene.add_quad({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, other);
-  scene.add_quad({-0.4f, 0.9f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, lamp);
+  scene.add_quad({-0.4f, 0.9f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, light);
   scene.add_lights();
   return scene;
 }
@@ -88,7 +88,7 @@ TANDEM_DEVICE_TEST("Depth limits and the direct integrator end paths where max_d
       CHECK(same(by_depth, test::path_trace(device, pipeline, device_scene, {constants})));
     }
   }
-  // A mirror that fills the view and shows a wall with a lamp in front of it, all behind the camera.
+  // A mirror that fills the view and shows a wall with a light in front of it, all behind the camera.
   test::TestScene scene;
   scene.add_quad({-50, -50, -5}, {100, 0, 0}, {0, 100, 0}, scene.add_material(test::mirror(glm::vec3(1))));
   scene.add_quad({-50, -50, 5}, {0, 100, 0}, {100, 0, 0}, scene.add_material(test::diffuse(glm::vec3(0.5f))));
@@ -101,7 +101,7 @@ TANDEM_DEVICE_TEST("Depth limits and the direct integrator end paths where max_d
   const test::Rendering none = test::path_trace(device, pipeline, device_scene, {constants});
   constants.max_specular_depth = 1;
   const test::Rendering once = test::path_trace(device, pipeline, device_scene, {constants});
-  // The first corner of the picture shows the wall, its centre the lamp.
+  // The first corner of the picture shows the wall, its centre the light.
   CHECK(none.radiance_sum[0] == 0.0f);
   CHECK(once.radiance_sum[0] > 0.0f);
   const std::size_t centre = 3 * (20 * 40 + 20);
@@ -129,7 +129,7 @@ TANDEM_DEVICE_TEST("Clamping scales all channels alike, keeps bounds, and change
   for (std::size_t pixel = 0; pixel < emission.ray_counts.size(); ++pixel) {
     const float* value = &emission.radiance_sum[3 * pixel];
     if (value[0] == 0.0f) continue;
-    // The lamp's 12, 10, 8 times 1 / 2.
+    // The light's 12, 10, 8 times 1 / 2.
     CHECK((value[0] == 6.0f && value[1] == 5.0f && value[2] == 4.0f));
     ++lit;
   }

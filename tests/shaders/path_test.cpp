@@ -29,11 +29,11 @@ double mean(const test::Rendering& rendering, std::uint32_t sample_count, std::s
   return sum / (static_cast<double>(rendering.radiance_sum.size()) / 3.0 * sample_count);
 }
 
-/// A closed white room with a lamp under its ceiling and one wall of mirror, around the origin.
+/// A closed white room with a light under its ceiling and one wall of mirror, around the origin.
 test::TestScene room() {
   test::TestScene scene;
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(0.7f, 0.6f, 0.5f)));
-  const std::uint32_t lamp = scene.add_material(test::diffuse(glm::vec3(0.2f), glm::vec3(12, 10, 8)));
+  const std::uint32_t light = scene.add_material(test::diffuse(glm::vec3(0.2f), glm::vec3(12, 10, 8)));
   const std::uint32_t shiny = scene.add_material(test::mirror(glm::vec3(0.9f, 0.8f, 0.7f)));
   const std::uint32_t clear = scene.add_material(test::glass(1.5f));
   scene.add_quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, white);
@@ -42,7 +42,7 @@ test::TestScene room() {
   scene.add_quad({1, -1, 1}, {-2, 0, 0}, {0, 2, 0}, white);
   scene.add_quad({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, white);
   scene.add_quad({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, shiny);
-  scene.add_quad({-0.4f, 0.9f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, lamp);
+  scene.add_quad({-0.4f, 0.9f, -0.4f}, {0.8f, 0, 0}, {0, 0, 0.8f}, light);
   scene.add_quad({-0.6f, -0.8f, -0.3f}, {0.5f, 0, 0.1f}, {0, 0.6f, 0.1f}, clear);
   scene.add_lights();
   return scene;
@@ -67,13 +67,13 @@ TANDEM_DEVICE_TEST("Rays that leave the scene bring the background, and are coun
 TANDEM_DEVICE_TEST("An emitter is seen from both sides, in the pixels that it covers") {
   // It covers the right half of the film: x from 0 on.
   test::TestScene scene;
-  const std::uint32_t lamp = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(3, 5, 7)));
+  const std::uint32_t light = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(3, 5, 7)));
   for (const float turn : {1.0f, -1.0f}) {
     test::TestScene turned = scene;
     if (turn > 0)
-      turned.add_quad({0, -10, -5}, {10, 0, 0}, {0, 20, 0}, lamp);
+      turned.add_quad({0, -10, -5}, {10, 0, 0}, {0, 20, 0}, light);
     else
-      turned.add_quad({0, -10, -5}, {0, 20, 0}, {10, 0, 0}, lamp);
+      turned.add_quad({0, -10, -5}, {0, 20, 0}, {10, 0, 0}, light);
     turned.add_lights();
     RenderConstants constants = test::render_constants(glm::vec3(0), 16, 8, turned);
     constants.max_depth = 1;
@@ -120,7 +120,7 @@ TANDEM_DEVICE_TEST("Under a uniform sky a diffuse plane has the radiance of its 
 }
 
 TANDEM_DEVICE_TEST("Glass without absorption disappears under a uniform sky") {
-  // A slab and a tilted block: what is not refracted is reflected, and the squeezing of radiance inside cancels
+  // A slab and a tilted block: what is not refracted is reflected, and the eta_scale of radiance inside cancels
   // outside.
   test::TestScene scene;
   const std::uint32_t clear = scene.add_material(test::glass(1.5f));
@@ -136,7 +136,7 @@ TANDEM_DEVICE_TEST("Glass without absorption disappears under a uniform sky") {
   CHECK(mean(rendering, 16) == doctest::Approx(1.0).epsilon(0.0045));
 }
 
-TANDEM_DEVICE_TEST("A rectangular lamp lights a diffuse plane as its form factor says") {
+TANDEM_DEVICE_TEST("A rectangular light lights a diffuse plane as its form factor says") {
   // Straight above the point at which all pixels look (the camera's field of view is nearly nothing), parallel to the
   // plane.
   const double half = 0.5, height = 2.0;
@@ -157,7 +157,8 @@ TANDEM_DEVICE_TEST("A rectangular lamp lights a diffuse plane as its form factor
   const double a = half / height;
   const double corner = 2.0 * a / std::sqrt(1 + a * a) * std::atan(a / std::sqrt(1 + a * a)) / (2.0 * std::numbers::pi);
   const double form_factor = 4.0 * corner;
-  // The integrand varies by less than 15 % over the lamp, so five deviations of the mean of 65536 samples are below 0.3
+  // The integrand varies by less than 15 % over the light, so five deviations of the mean of 65536 samples are below
+  // 0.3
   // %.
   CHECK(mean(rendering, 16, 0) == doctest::Approx(0.5 * 6 * form_factor).epsilon(0.003));
   CHECK(mean(rendering, 16, 1) == doctest::Approx(0.25 * 3 * form_factor).epsilon(0.003));

@@ -98,18 +98,18 @@ RenderConstants camera_on_unit_sphere(std::uint32_t side, const test::TestScene&
   return constants;
 }
 
-/// Root of the mean squared difference from the exact shading of a white unit sphere under a small distant lamp, which
-/// is the cosine between the normal and the direction to the lamp.
+/// Root of the mean squared difference from the exact shading of a white unit sphere under a small distant light, which
+/// is the cosine between the normal and the direction to the light.
 double shading_error(rhi::Device& device, int subdivisions, std::uint32_t smooth) {
   constexpr std::uint32_t side = 96, samples = 16;
-  const glm::dvec3 to_lamp(0.6, 0, 0.8);
+  const glm::dvec3 to_light(0.6, 0, 0.8);
   test::TestScene scene;
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(1)));
-  // A lamp of 10 x 10 at distance 1000: irradiance pi across its light.
+  // A light of 10 x 10 at distance 1000: irradiance pi across its light.
   const auto radiance = static_cast<float>(std::numbers::pi * 1e4);
-  const std::uint32_t lamp = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(radiance)));
+  const std::uint32_t light = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(radiance)));
   scene.add_sphere(glm::dvec3(0), 1, subdivisions, white | smooth);
-  scene.add_quad(glm::vec3(1000.0 * to_lamp) + glm::vec3(-4, -5, 3), {8, 0, -6}, {0, 10, 0}, lamp);
+  scene.add_quad(glm::vec3(1000.0 * to_light) + glm::vec3(-4, -5, 3), {8, 0, -6}, {0, 10, 0}, light);
   scene.add_lights();
   RenderConstants constants = camera_on_unit_sphere(side, scene);
   constants.max_depth = 2;
@@ -127,8 +127,8 @@ double shading_error(rhi::Device& device, int subdivisions, std::uint32_t smooth
       const double discriminant = along * along - glm::dot(origin, origin) + 1;
       if (discriminant < 0) continue;
       const glm::dvec3 normal = origin + (along - std::sqrt(discriminant)) * direction;
-      const double cosine = glm::dot(normal, to_lamp);
-      // Not near the silhouette, which facets have elsewhere, nor where facets begin to turn away from the lamp.
+      const double cosine = glm::dot(normal, to_light);
+      // Not near the silhouette, which facets have elsewhere, nor where facets begin to turn away from the light.
       if (cosine < 0.3 || -glm::dot(normal, direction) < 0.5) continue;
       const double error = double{rendering.radiance_sum[3 * (y * side + x)]} / samples - cosine;
       squares += error * error;
@@ -233,13 +233,13 @@ TANDEM_DEVICE_TEST("No light comes through a smooth surface, however its normals
     test::TestScene scene;
     const std::uint32_t material =
         scene.add_material(is_mirror ? test::mirror(glm::vec3(1)) : test::diffuse(glm::vec3(1))) | triangle_smooth;
-    const std::uint32_t lamp = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(100)));
+    const std::uint32_t light = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(100)));
     for (int i = -20; i < 20; ++i) {
       scene.add_quad({static_cast<float>(i), -20, -5}, {1, 0, 0}, {0, 40, 0}, material);
       for (int corner = 0; corner < 4; ++corner)
         scene.normals.emplace_back(glm::normalize(glm::dvec3(0, 0, 1) + 0.99 * unit_vector(random)));
     }
-    scene.add_quad({-100, -100, -6}, {200, 0, 0}, {0, 200, 0}, lamp);
+    scene.add_quad({-100, -100, -6}, {200, 0, 0}, {0, 200, 0}, light);
     scene.add_lights();
     RenderConstants constants = test::render_constants({0.5f, 0.25f, 0}, 64, 64, scene);
     constants.dispatch.sample_count = 4;
@@ -291,9 +291,9 @@ TEST_CASE("All devices shade smooth spheres to the last bit") {
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(0.7f, 0.6f, 0.5f)));
   const std::uint32_t shiny = scene.add_material(test::mirror(glm::vec3(0.9f)));
   const std::uint32_t clear = scene.add_material(test::glass(1.5f));
-  const std::uint32_t lamp = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(20)));
+  const std::uint32_t light = scene.add_material(test::diffuse(glm::vec3(0), glm::vec3(20)));
   scene.add_quad({-9, -1, 9}, {18, 0, 0}, {0, 0, -18}, white);
-  scene.add_quad({-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, lamp);
+  scene.add_quad({-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, light);
   scene.add_sphere({-2.1, 0, -1}, 0.95, 8, white | triangle_smooth);
   scene.add_sphere({0, 0, -1}, 0.95, 8, shiny | triangle_smooth);
   scene.add_sphere({2.1, 0, -1}, 0.95, 8, clear | triangle_smooth);

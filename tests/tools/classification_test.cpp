@@ -58,7 +58,7 @@ TEST_CASE("diff --classify says that two surfaces lie in one place") {
   CHECK(found.at("surveyed_pixels") == 9);  // 3 by 3
   CHECK(found.at("mismatches") == 0);
   CHECK(found.at("pixel_classes").at("coincident geometry").get<int>() > 40);
-  const nlohmann::json& first = found.at("partings").at(0);
+  const nlohmann::json& first = found.at("divergences").at(0);
   CHECK(first.at("class") == "coincident geometry");
   CHECK(first.at("field") == "answer");
   CHECK(first.at("a") != first.at("b"));
@@ -79,7 +79,7 @@ TEST_CASE("diff --classify of devices that agree has nothing to say") {
   CHECK(found.at("surveyed_pixels") == 256);
   CHECK(found.at("differing_paths") == 0);
   CHECK(found.at("pixels").empty());
-  CHECK(found.at("partings").empty());
+  CHECK(found.at("divergences").empty());
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ TEST_CASE("explain names a tie, the triangles and their materials, where two sur
     judged = true;
     CHECK(sample.at("differs") == true);
     CHECK(sample.at("class") == "coincident geometry");
-    CHECK(sample.at("partings").at(0).at("sentence").get<std::string>().size() > 20);
+    CHECK(sample.at("divergences").at(0).at("sentence").get<std::string>().size() > 20);
   }
   CHECK(judged);
   CHECK_FALSE(json.contains("probes"));

@@ -46,8 +46,8 @@ void add_explain_command(CLI::App& app, Action& action) {
   command->add_option("--arbiter", explanation.arbiter, "The device that says which answer to a ray is right")
       ->type_name("D3")
       ->capture_default_str();
-  add_trace_form(*command, "--trace-a", explanation.trace_a, "As --trace, for the first device only");
-  add_trace_form(*command, "--trace-b", explanation.trace_b, "As --trace, for the second device only");
+  add_tracing_mode(*command, "--trace-a", explanation.trace_a, "As --trace, for the first device only");
+  add_tracing_mode(*command, "--trace-b", explanation.trace_b, "As --trace, for the second device only");
   command->add_flag("--all-events", options->all_events,
                     "Show every event with every field, not only those where the paths part");
   command->add_flag_function(

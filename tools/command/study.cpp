@@ -40,7 +40,7 @@ int study_sampling(const Options& options) {
     bool compares_thesis;
   };
   for (const Subject& subject : {Subject{study::weekend_box(), true}, Subject{study::veach_plates(), false},
-                                 Subject{study::lamp_over_floor(), false}}) {
+                                 Subject{study::light_over_floor(), false}}) {
     ProgressBar bar(subject.scene.name);
     std::optional<study::SceneResult> result = study::study_scene(
         device, subject.scene, study::methods(), options.settings, subject.compares_thesis, [&](double fraction) {
@@ -79,7 +79,7 @@ void add_study_command(CLI::App& app, Action& action) {
   command->add_option("--json", options->json, "Write all measurements as JSON")->type_name("FILE");
   command->add_option("--markdown", options->markdown, "Write the tables as Markdown")->type_name("FILE");
   command->footer(
-      "The scenes are built in: the Cornell box of Ray Tracing in One Weekend's series, Veach's plates, and a lamp "
+      "The scenes are built in: the Cornell box of Ray Tracing in One Weekend's series, Veach's plates, and a light "
       "over\n"
       "a floor, which is smooth. RMSE is over pixels and channels; the variance is that of one sample; the efficiency "
       "is\n"

@@ -59,11 +59,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
   CLI::App& method = *group("Method");
   add_named(method, "--integrator", settings.integrator, pathtracer::integrator_names(),
-            "path: all light; direct: lamps and their direct light; ambient-occlusion: how open each place is [path]");
+            "path: all light; direct: lights and their direct light; ambient-occlusion: how open each place is [path]");
   add_named(method, "--sampler", settings.sampler, pathtracer::sampler_names(), "Where samples lie [independent]");
-  add_switch(method, "--nee", settings.light_sampling, "Next event estimation: rays to lamps at every vertex [on]");
+  add_switch(method, "--nee", settings.light_sampling, "Next event estimation: rays to lights at every vertex [on]");
   add_named(method, "--mis", settings.mis, pathtracer::mis_names(),
-            "Heuristic by which rays to lamps and scattered rays that meet one are weighted [power]");
+            "Heuristic by which rays to lights and scattered rays that meet one are weighted [power]");
   add_named(method, "--bsdf-sampling", settings.bsdf_sampling, pathtracer::bsdf_sampling_names(),
             "Directions of scattered rays, for materials that are not perfectly specular [bsdf]");
   add_switch(method, "--roulette", settings.roulette, "Russian roulette ends paths that carry little [on]");
@@ -82,9 +82,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   CLI::App& execution = *group("Execution");
   add_whole_number(execution, "--threads", options.threads, 0, most_threads,
                    "Worker threads of the CPU device; 0: as many as the machine has");
-  add_trace_form(execution, "--trace", options.trace,
-                 "How rays are traced: query (ray queries) or pipeline (a ray tracing pipeline); the image is the same "
-                 "[what the device has, query first]");
+  add_tracing_mode(
+      execution, "--trace", options.trace,
+      "How rays are traced: query (ray queries) or pipeline (a ray tracing pipeline); the image is the same "
+      "[what the device has, query first]");
   execution.add_flag("--validation", options.validation,
                      "Turn the Vulkan validation layers on; their messages go to standard error");
 }
@@ -100,10 +101,10 @@ void add_tone_options(CLI::App& command, pathtracer::Tone& tone) {
   add_number(group, "--exposure", tone.exposure, -100.0F, 100.0F, "Stops by which .png files are brightened");
 }
 
-void add_trace_form(CLI::App& command, const std::string& name, std::optional<pathtracer::TraceForm>& value,
-                    const std::string& description) {
+void add_tracing_mode(CLI::App& command, const std::string& name, std::optional<pathtracer::TracingMode>& value,
+                      const std::string& description) {
   const auto read = [name, &value](const std::string& text) {
-    for (const pathtracer::TraceForm form : {pathtracer::TraceForm::query, pathtracer::TraceForm::pipeline}) {
+    for (const pathtracer::TracingMode form : {pathtracer::TracingMode::query, pathtracer::TracingMode::pipeline}) {
       if (text != pathtracer::name(form)) continue;
       value = form;
       return;

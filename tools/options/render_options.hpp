@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "pathtracer/image/tone_map.hpp"
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "pathtracer/scene/settings.hpp"
 
 namespace tandem::tools {
@@ -23,13 +23,13 @@ struct RenderOptions {
   std::optional<glm::vec3> camera_target;
   std::optional<float> field_of_view;  ///< vertical, degrees
   std::optional<pathtracer::CameraKind> camera;
-  std::optional<float> view_height;            ///< of an orthographic camera
-  std::optional<float> lens_radius;            ///< in the scene's units
-  std::optional<float> focus_distance;         ///< likewise
-  std::uint32_t threads = 0;                   ///< of the CPU device; 0: all
-  std::optional<pathtracer::TraceForm> trace;  ///< none: what the device has, ray queries first
-  bool validation = false;                     ///< Vulkan validation layers
-  bool allow_missing_mtl = false;              ///< a missing MTL file or texture is a warning
+  std::optional<float> view_height;              ///< of an orthographic camera
+  std::optional<float> lens_radius;              ///< in the scene's units
+  std::optional<float> focus_distance;           ///< likewise
+  std::uint32_t threads = 0;                     ///< of the CPU device; 0: all
+  std::optional<pathtracer::TracingMode> trace;  ///< none: what the device has, ray queries first
+  bool validation = false;                       ///< Vulkan validation layers
+  bool allow_missing_mtl = false;                ///< a missing MTL file or texture is a warning
 };
 
 /// Declares SCENE and the options on the command. `options` must outlive the parsing.
@@ -39,7 +39,7 @@ void add_render_options(CLI::App& command, RenderOptions& options);
 void add_tone_options(CLI::App& command, pathtracer::Tone& tone);
 
 /// An option whose value is the name of a form of tracing.
-void add_trace_form(CLI::App& command, const std::string& name, std::optional<pathtracer::TraceForm>& value,
-                    const std::string& description);
+void add_tracing_mode(CLI::App& command, const std::string& name, std::optional<pathtracer::TracingMode>& value,
+                      const std::string& description);
 
 }  // namespace tandem::tools

@@ -12,7 +12,7 @@ namespace tandem::tools {
 /// What one device did in each round of `tandem bench`.
 struct BenchSeries {
   rhi::DeviceInfo device;
-  pathtracer::TraceForm trace = pathtracer::TraceForm::query;
+  pathtracer::TracingMode trace = pathtracer::TracingMode::query;
   std::uint64_t rays = 0;            ///< of one round
   double build_milliseconds = 0.0;   ///< of the acceleration structures, once
   std::vector<double> milliseconds;  ///< of each round

@@ -11,26 +11,26 @@ namespace {
 
 using compare::ClassifiedPath;
 using compare::DifferenceClass;
-using compare::Parting;
+using compare::Divergence;
 
-/// Partings that the table and the JSON list, and pixels that the JSON does.
+/// Divergences that the table and the JSON list, and pixels that the JSON does.
 constexpr std::size_t most_in_table = 10;
 constexpr std::size_t most_in_json = 1000;
 constexpr std::size_t most_pixels_in_json = 100000;
 
 struct Listed {
   const ClassifiedPath* path;
-  const Parting* parting;
+  const Divergence* divergence;
 };
 
-/// At most `count` partings that are no mere rounding, the worst first.
+/// At most `count` divergences that are no mere rounding, the worst first.
 std::vector<Listed> listed(const compare::Classification& classification, std::size_t count, bool rounding) {
   std::vector<Listed> all;
   for (const ClassifiedPath& path : classification.paths)
-    for (const Parting& parting : path.partings)
-      if (rounding || parting.difference_class != DifferenceClass::rounding) all.push_back({&path, &parting});
+    for (const Divergence& divergence : path.divergences)
+      if (rounding || divergence.difference_class != DifferenceClass::rounding) all.push_back({&path, &divergence});
   std::stable_sort(all.begin(), all.end(), [](const Listed& first, const Listed& second) {
-    return first.parting->difference_class > second.parting->difference_class;
+    return first.divergence->difference_class > second.divergence->difference_class;
   });
   if (all.size() > count) all.resize(count);
   return all;
@@ -54,10 +54,10 @@ std::string table(const compare::Classification& classification) {
   line("paths", fmt::format("{} traced again, {} differ", classification.traced_paths, classification.differing_paths));
   for (std::size_t i = 0; i < compare::difference_class_count; ++i) {
     const auto difference_class = static_cast<DifferenceClass>(i);
-    const bool zero = classification.pixel_counts[i] == 0 && classification.parting_counts[i] == 0;
+    const bool zero = classification.pixel_counts[i] == 0 && classification.divergence_counts[i] == 0;
     if (zero && difference_class != DifferenceClass::mismatch) continue;
     line("", fmt::format("{}: {} pixels, {} times.{}{}", compare::name(difference_class),
-                         classification.pixel_counts[i], classification.parting_counts[i], zero ? "" : " ",
+                         classification.pixel_counts[i], classification.divergence_counts[i], zero ? "" : " ",
                          zero ? "" : compare::meaning(difference_class)));
   }
   std::size_t wrong_sums = 0;
@@ -71,25 +71,25 @@ std::string table(const compare::Classification& classification) {
   for (const Listed& each : listed(classification, most_in_table, false)) {
     const pathtracer::PathId& path = each.path->path;
     line("", fmt::format("pixel {},{} sample {}, {}: {}", path.pixel.x, path.pixel.y, path.sample,
-                         compare::name(each.parting->difference_class), each.parting->sentence));
+                         compare::name(each.divergence->difference_class), each.divergence->sentence));
   }
   return text;
 }
 
-nlohmann::ordered_json to_json(const Parting& parting) {
-  nlohmann::ordered_json json = {{"class", compare::name(parting.difference_class)},
-                                 {"segment", parting.segment},
-                                 {"event", compare::name(parting.a.kind())}};
-  if (parting.field) {
-    json["field"] = parting.field->name;
-    json["a"] = compare::field_text(*parting.field, parting.a);
-    json["b"] = compare::field_text(*parting.field, parting.b);
-    json["ulp"] = parting.ulp_distance;
+nlohmann::ordered_json to_json(const Divergence& divergence) {
+  nlohmann::ordered_json json = {{"class", compare::name(divergence.difference_class)},
+                                 {"segment", divergence.segment},
+                                 {"event", compare::name(divergence.a.kind())}};
+  if (divergence.field) {
+    json["field"] = divergence.field->name;
+    json["a"] = compare::field_text(*divergence.field, divergence.a);
+    json["b"] = compare::field_text(*divergence.field, divergence.b);
+    json["ulp"] = divergence.ulp_distance;
   } else {
-    json["event_b"] = compare::name(parting.b.kind());
+    json["event_b"] = compare::name(divergence.b.kind());
   }
-  if (parting.exact_answer) json["exact"] = *parting.exact_answer;
-  json["sentence"] = parting.sentence;
+  if (divergence.exact_answer) json["exact"] = *divergence.exact_answer;
+  json["sentence"] = divergence.sentence;
   return json;
 }
 
@@ -101,9 +101,9 @@ nlohmann::ordered_json to_json(const compare::Classification& classification) {
                                  {"differing_paths", classification.differing_paths},
                                  {"mismatches", classification.mismatches()},
                                  {"pixel_classes", counts_json(classification.pixel_counts)},
-                                 {"parting_classes", counts_json(classification.parting_counts)},
+                                 {"divergence_classes", counts_json(classification.divergence_counts)},
                                  {"pixels", nlohmann::ordered_json::array()},
-                                 {"partings", nlohmann::ordered_json::array()}};
+                                 {"divergences", nlohmann::ordered_json::array()}};
   for (std::size_t i = 0; i < std::min(classification.pixels.size(), most_pixels_in_json); ++i) {
     const compare::ClassifiedPixel& pixel = classification.pixels[i];
     nlohmann::ordered_json each = {{"pixel", {pixel.pixel.x, pixel.pixel.y}},
@@ -113,9 +113,9 @@ nlohmann::ordered_json to_json(const compare::Classification& classification) {
   }
   for (const Listed& each : listed(classification, most_in_json, true)) {
     const pathtracer::PathId& path = each.path->path;
-    nlohmann::ordered_json parting = {{"pixel", {path.pixel.x, path.pixel.y}}, {"sample", path.sample}};
-    parting.update(to_json(*each.parting));
-    json["partings"].push_back(std::move(parting));
+    nlohmann::ordered_json divergence = {{"pixel", {path.pixel.x, path.pixel.y}}, {"sample", path.sample}};
+    divergence.update(to_json(*each.divergence));
+    json["divergences"].push_back(std::move(divergence));
   }
   return json;
 }

@@ -49,21 +49,21 @@ nlohmann::ordered_json field_json(const EventField& field, const EventPair& pair
   return json;
 }
 
-nlohmann::ordered_json parting_json(const compare::Parting& parting) {
-  nlohmann::ordered_json json = {{"segment", parting.segment}, {"event", compare::name(parting.a.kind())}};
-  if (parting.field != nullptr) {
-    json["field"] = parting.field->name;
-    json["a"] = value_json(*parting.field, parting.a);
-    json["b"] = value_json(*parting.field, parting.b);
-    if (parting.ulp_distance != none) json["ulp"] = parting.ulp_distance;
-    if (std::isfinite(parting.relative_difference)) json["relative"] = parting.relative_difference;
+nlohmann::ordered_json divergence_json(const compare::Divergence& divergence) {
+  nlohmann::ordered_json json = {{"segment", divergence.segment}, {"event", compare::name(divergence.a.kind())}};
+  if (divergence.field != nullptr) {
+    json["field"] = divergence.field->name;
+    json["a"] = value_json(*divergence.field, divergence.a);
+    json["b"] = value_json(*divergence.field, divergence.b);
+    if (divergence.ulp_distance != none) json["ulp"] = divergence.ulp_distance;
+    if (std::isfinite(divergence.relative_difference)) json["relative"] = divergence.relative_difference;
   } else {
-    json["event_b"] = compare::name(parting.b.kind());
+    json["event_b"] = compare::name(divergence.b.kind());
   }
-  json["class"] = compare::name(parting.difference_class);
-  json["sentence"] = parting.sentence;
-  if (parting.exact_answer) {
-    const std::uint32_t answer = *parting.exact_answer;
+  json["class"] = compare::name(divergence.difference_class);
+  json["sentence"] = divergence.sentence;
+  if (divergence.exact_answer) {
+    const std::uint32_t answer = *divergence.exact_answer;
     json["exact_answer"] = answer == none ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(answer);
   }
   return json;
@@ -74,8 +74,9 @@ nlohmann::ordered_json sample_json(const ExplainedSample& sample) {
   if (!sample.judgement) return json;
   const std::optional<compare::DifferenceClass> worst = sample.judgement->worst();
   json["class"] = worst ? nlohmann::ordered_json(compare::name(*worst)) : nlohmann::ordered_json(nullptr);
-  json["partings"] = nlohmann::ordered_json::array();
-  for (const compare::Parting& parting : sample.judgement->partings) json["partings"].push_back(parting_json(parting));
+  json["divergences"] = nlohmann::ordered_json::array();
+  for (const compare::Divergence& divergence : sample.judgement->divergences)
+    json["divergences"].push_back(divergence_json(divergence));
   return json;
 }
 

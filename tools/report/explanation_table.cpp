@@ -225,17 +225,17 @@ void print_first(const Explanation& explanation, const Line& line) {
     line("  distance", fmt::format("{} ULP, {:.3g} relative", first.ulp_distance, first.relative_difference));
 }
 
-void print_partings(const Explanation& explanation, const Line& line) {
+void print_divergences(const Explanation& explanation, const Line& line) {
   const ExplainedSample& shown = explanation.shown_sample();
   if (!shown.judgement) return;
   bool later = false;
-  for (const compare::Parting& parting : shown.judgement->partings) {
+  for (const compare::Divergence& divergence : shown.judgement->divergences) {
     const std::string place =
-        fmt::format("{} (segment {}, {}{}{})", compare::name(parting.difference_class), parting.segment,
-                    compare::name(parting.a.kind()), parting.field != nullptr ? ", " : "",
-                    parting.field != nullptr ? parting.field->name : "");
-    line(later ? "then" : "class", later ? place : compare::name(parting.difference_class));
-    line("", parting.sentence);
+        fmt::format("{} (segment {}, {}{}{})", compare::name(divergence.difference_class), divergence.segment,
+                    compare::name(divergence.a.kind()), divergence.field != nullptr ? ", " : "",
+                    divergence.field != nullptr ? divergence.field->name : "");
+    line(later ? "then" : "class", later ? place : compare::name(divergence.difference_class));
+    line("", divergence.sentence);
     later = true;
   }
   for (const ExplainedSample& sample : explanation.samples) {
@@ -266,7 +266,7 @@ std::string table(const Explanation& explanation, const ExplanationTableOptions&
   line("pixel", pixel_text(explanation));
   line("path shown", path_text(explanation));
   if (explanation.first) print_first(explanation, line);
-  print_partings(explanation, line);
+  print_divergences(explanation, line);
   print_observed(explanation.observed, line);
   text += "\n";
   print_rows(event_rows(explanation, options.all_events), options.colors, text);

@@ -25,7 +25,7 @@ using pathtracer::PathStart;
 constexpr std::size_t ranked_pixels = 10'000;
 constexpr std::size_t recorded_pixels = 64;
 
-/// Of each pixel the sample to look at: the first with the worst parting, else the first that differs, else 0.
+/// Of each pixel the sample to look at: the first with the worst divergence, else the first that differs, else 0.
 std::vector<PathStart> starts_of(Comparison& comparison, const compare::Classification* classification,
                                  const std::vector<compare::RankedPixel>& pixels) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, const compare::ClassifiedPath*> classified;

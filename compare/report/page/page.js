@@ -158,7 +158,7 @@ async function start() {
     names.b += ` (${numbers.trace_b})`;
   }
   const pixels = await loadPixels(data);
-  const found = data.classification ? await unpackedJson(data.classification.found) : {partings: [], wrong_sums: []};
+  const found = data.classification ? await unpackedJson(data.classification.found) : {divergences: [], wrong_sums: []};
   const recorded = await unpackedJson(data.paths);
   const shown = new Set(Object.keys(classTable));
 

@@ -79,7 +79,7 @@ function eventTable(path, names, observed, showsAll) {
  * Shows the paths of a pixel below the images.
  * @param scene its file
  * @param recorded paths with events: {x, y, sample, events}
- * @param found of the classification: {partings, wrong_sums}
+ * @param found of the classification: {divergences, wrong_sums}
  */
 function showPaths({scene, data, pixels, names, recorded, found}, pixel) {
   const heading = byId("paths-heading");
@@ -94,10 +94,10 @@ function showPaths({scene, data, pixels, names, recorded, found}, pixel) {
   const children = [pixelTable(pixels, names, pixel)];
   for (const {device} of found.wrong_sums.filter(isHere))
     children.push(element("p", {className: "problem"}, `The picture of ${names[device]} is not the sum of the paths that it traces here.`));
-  const partings = found.partings.filter(isHere);
-  if (partings.length > 0) {
-    children.push(element("h3", {}, "Where they part"), element("ul", {className: "partings"},
-      ...partings.map((parting) => element("li", {}, classBadge(parting.class), ` sample ${parting.sample}, segment ${parting.segment}: ${parting.sentence}`))));
+  const divergences = found.divergences.filter(isHere);
+  if (divergences.length > 0) {
+    children.push(element("h3", {}, "Where they part"), element("ul", {className: "divergences"},
+      ...divergences.map((divergence) => element("li", {}, classBadge(divergence.class), ` sample ${divergence.sample}, segment ${divergence.segment}: ${divergence.sentence}`))));
   }
   const paths = recorded.filter(isHere);
   if (paths.length === 0) children.push(element("p", {}, unrecordedSentence(data, pixels, pixel), ...commandHint(scene, pixel)));

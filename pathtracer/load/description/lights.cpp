@@ -34,7 +34,7 @@ std::vector<std::string> keys_of(Kind kind) {
 }
 
 /// A material that emits and reflects nothing.
-std::uint32_t add_lamp_material(const Object& light, std::size_t number, Scene& scene) {
+std::uint32_t add_light_material(const Object& light, std::size_t number, Scene& scene) {
   scene.materials.push_back(diffuse_material(glm::vec3(0), light.require("radiance").color(radiance_range)));
   scene.material_names.push_back(fmt::format("lights[{}]", number));
   return static_cast<std::uint32_t>(scene.materials.size() - 1);
@@ -71,12 +71,12 @@ void add_lights(const std::optional<Value>& list, Scene& scene) {
       const glm::vec3 corner = object.require("corner").vector(any_length);
       const glm::vec3 u = object.require("u").vector(any_length);
       const glm::vec3 v = object.require("v").vector(any_length);
-      add_parallelogram(value, corner, u, v, add_lamp_material(object, number, scene), scene);
+      add_parallelogram(value, corner, u, v, add_light_material(object, number, scene), scene);
     } else if (kind == Kind::sphere) {
       const glm::vec3 centre = object.require("centre").vector(any_length);
       const float radius = object.require("radius").number(positive_length);
       scene.spheres.push_back(
-          {.centre = centre, .radius = radius, .material = add_lamp_material(object, number, scene)});
+          {.centre = centre, .radius = radius, .material = add_light_material(object, number, scene)});
     } else {
       scene.lights.push_back(read_punctual_light(kind, object));
     }

@@ -17,7 +17,9 @@ glm::dmat4 read_step(const Value& value) {
     value.fail("must have one of: translate, rotate, scale");
   if (rotate.has_value() != step.get("axis").has_value()) value.fail("must have an axis with rotate, and only then");
   if (translate) return glm::translate(identity, glm::dvec3(translate->vector(any_length)));
-  if (scale) return glm::scale(identity, glm::dvec3(scale->is_array() ? scale->vector(any_length) : glm::vec3(scale->number(any_length))));
+  if (scale)
+    return glm::scale(identity,
+                      glm::dvec3(scale->is_array() ? scale->vector(any_length) : glm::vec3(scale->number(any_length))));
   const glm::dvec3 axis(step.require("axis").direction(any_length));
   return glm::rotate(identity, glm::radians(double{rotate->number(any_length)}), glm::normalize(axis));
 }

@@ -33,14 +33,14 @@ TEST_CASE("p-values of means of the same value are uniform, and small when they 
   std::vector<double> p_values(10);
   for (int i = 0; i < 2000; ++i) {
     const double p = statistics::welch_p_value(statistics::mean_of(samples(random, 12, 0, 1)),
-                                            statistics::mean_of(samples(random, 30, -1, 2)));
+                                               statistics::mean_of(samples(random, 30, -1, 2)));
     p_values[test::unit_interval_bin(p, p_values.size())] += 1;
   }
   CHECK(test::chi_square_uniform(p_values).p_value > 1e-3);  // the seed is fixed
   CHECK(statistics::welch_p_value(statistics::mean_of(samples(random, 1000, 0, 1)),
-                               statistics::mean_of(samples(random, 1000, 0.1, 1.1))) < 1e-6);
+                                  statistics::mean_of(samples(random, 1000, 0.1, 1.1))) < 1e-6);
   CHECK(statistics::welch_p_value({.value = 1, .standard_error = 0, .count = 4},
-                               {.value = 1, .standard_error = 0, .count = 4}) == 1.0);
+                                  {.value = 1, .standard_error = 0, .count = 4}) == 1.0);
   CHECK(statistics::welch_p_value({.value = 1, .standard_error = 0, .count = 4},
-                               {.value = 1.01, .standard_error = 0, .count = 4}) == 0.0);
+                                  {.value = 1.01, .standard_error = 0, .count = 4}) == 0.0);
 }

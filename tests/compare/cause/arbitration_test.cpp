@@ -34,7 +34,7 @@ std::vector<std::uint32_t> trace_exactly(const pathtracer::Scene& scene, std::sp
   std::vector<std::uint32_t> answers;
   for (const TracedRay& ray : rays) {
     double nearest = ray.t_max;
-    std::uint32_t triangle = pathtracer::no_triangle;
+    std::uint32_t triangle = pathtracer::no_primitive;
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
       const auto corner = [&](int k) { return glm::dvec3(scene.positions[scene.triangles[i].vertices[k]]); };
       const glm::dvec3 origin(ray.origin), direction(ray.direction);
@@ -61,7 +61,7 @@ std::vector<std::uint32_t> trace_exactly(const pathtracer::Scene& scene, std::sp
           triangle = static_cast<std::uint32_t>(scene.triangles.size()) + i;
         }
     }
-    answers.push_back(ray.kind == RayKind::closest ? triangle : (triangle != pathtracer::no_triangle ? 1u : 0u));
+    answers.push_back(ray.kind == RayKind::closest ? triangle : (triangle != pathtracer::no_primitive ? 1u : 0u));
   }
   return answers;
 }
@@ -76,7 +76,7 @@ compare::Judgement judge(const pathtracer::Scene& scene, const TracedRay& ray, s
                             [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); })[0];
 }
 
-constexpr std::uint32_t none = pathtracer::no_triangle;
+constexpr std::uint32_t none = pathtracer::no_primitive;
 
 TEST_CASE("well inside a triangle the device that sees it is right") {
   const pathtracer::Scene scene = plates({1, 3});

@@ -70,12 +70,12 @@ TEST_CASE("A ray enters and leaves a sphere, and may touch it") {
   pathtracer::GpuSphere sphere;
   sphere.centre = {0.5f, 0.25f, 0};
   sphere.radius = 1;
-  const std::vector<Encounter> met = meet(down_at(0.5, 0.25), sphere);
+  const std::vector<Intersection> met = meet(down_at(0.5, 0.25), sphere);
   REQUIRE(met.size() == 2);
-  for (const Encounter& encounter : met) CHECK(encounter.certain);
+  for (const Intersection& intersection : met) CHECK(intersection.certain);
   CHECK((met[0].t_low + met[0].t_high) / 2 == doctest::Approx(1.0));
   CHECK((met[1].t_low + met[1].t_high) / 2 == doctest::Approx(2.0));
-  const std::vector<Encounter> touched = meet(down_at(1.5, 0.25), sphere);
+  const std::vector<Intersection> touched = meet(down_at(1.5, 0.25), sphere);
   REQUIRE(touched.size() == 2);
   CHECK_FALSE(touched[0].certain);
   CHECK(meet(down_at(1.5 + 1e-4, 0.25), sphere).empty());

@@ -106,7 +106,7 @@ TEST_CASE("the largest finite values do not overflow") {
 TEST_CASE("images that cannot be compared are an error") {
   const pathtracer::Image two = image(2, 1, std::vector<glm::vec3>(2));
   CHECK_THROWS_WITH_AS(measure(two, image(1, 2, std::vector<glm::vec3>(2))),
-                       "images of 2x1 and 1x2 pixels cannot be compared", rhi::Error);
+                       "images of 2x1 and 1x2 pixels cannot be compared", tandem::Error);
   CHECK_THROWS_AS(measure(image(0, 0, {}), image(0, 0, {})), tandem::Error);
   CHECK_THROWS_AS(measure(two, image(2, 1, std::vector<glm::vec3>(1))), tandem::Error);
 }

@@ -34,7 +34,7 @@ void set_bits(ProbeAnswer& answer, const ProbeField& field, std::uint32_t bits) 
 struct Asked {
   Asked(const pathtracer::Scene& scene, const Trial& asked_trial, std::size_t ray_count)
       : trial(asked_trial), prober(*test::device("cpu"), scene), reference(scene) {
-    instances = reference.instances(trial.arrangement);
+    instances = reference.instances(trial.instance_setup);
     rays = rays_of(trial, test::rays_through(scene, ray_count, 13), reference, scene);
     answers = prober.answer(trial, rays);
     for (const ProbeRay& ray : rays) hits.push_back(reference.hits(trial, instances, ray));
@@ -99,8 +99,8 @@ TEST_CASE("A field that is off is named, and one that is a unit in the last plac
           if (value != 0) CHECK(asked.judged(i, rounded).kind == DifferenceClass::rounding);
           set_bits(wrong, field, std::bit_cast<std::uint32_t>(value + 0.125f));
           // Of a triangle that is met as flat as that nothing better is known.
-          if (is_barycentric && asked.hits[i].front().encounter.barycentric_errors[0] > 0.05) continue;
-          if (is_barycentric && asked.hits[i].front().encounter.barycentric_errors[1] > 0.05) continue;
+          if (is_barycentric && asked.hits[i].front().intersection.barycentric_errors[0] > 0.05) continue;
+          if (is_barycentric && asked.hits[i].front().intersection.barycentric_errors[1] > 0.05) continue;
         } else {
           set_bits(wrong, field, bits + 1);
         }
@@ -122,7 +122,7 @@ TEST_CASE("A ray that starts on a surface may meet it, but not farther off than 
   scene.triangles = {{.vertices = {0, 1, 2}, .material = 0}, {.vertices = {3, 4, 5}, .material = 0}};
   const Trial& trial = trial_named("plain");
   const ProbeReference reference(scene);
-  const std::vector<ProbeInstance> instances = reference.instances(trial.arrangement);
+  const std::vector<ProbeInstance> instances = reference.instances(trial.instance_setup);
   const ProbeRay ray = {.origin = {0.25f, 0.5f, 1}, .t_min = 0, .direction = {0, 0, -1}, .t_max = 10};
   const std::vector<ProbeHit> hits = reference.hits(trial, instances, ray);
   ProbeAnswer far, near;
@@ -186,8 +186,8 @@ TEST_CASE("A device that does not heed what a trial asks for is found") {
   CHECK(mismatches("until behind the hit", [](Trial&, Rays& rays) {
           for (ProbeRay& ray : rays) ray.t_max *= 0.99f;
         }) > 0);
-  CHECK(mismatches("without indices", [](Trial& trial, Rays&) { trial.arrangement = Arrangement::build_transform; }) >
-        0);
+  CHECK(mismatches("without indices",
+                   [](Trial& trial, Rays&) { trial.instance_setup = InstanceSetup::build_transform; }) > 0);
 }
 
 TEST_CASE("Rays are spread evenly, and those that cannot be asked are known") {

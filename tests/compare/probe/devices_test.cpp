@@ -15,7 +15,7 @@
 using namespace tandem;
 using namespace tandem::compare;
 using pathtracer::Scene;
-using pathtracer::TraceForm;
+using pathtracer::TracingMode;
 
 namespace {
 
@@ -23,10 +23,10 @@ const std::filesystem::path scenes = std::filesystem::path(TANDEM_SOURCE_DIRECTO
 
 Scene shipped(const char* name) { return pathtracer::load_scene(scenes / name, {}); }
 
-std::vector<TraceForm> forms_of(const rhi::Device& device) {
-  std::vector<TraceForm> forms;
-  if (device.info().capabilities.ray_query) forms.push_back(TraceForm::query);
-  if (device.info().capabilities.ray_tracing_pipeline) forms.push_back(TraceForm::pipeline);
+std::vector<TracingMode> forms_of(const rhi::Device& device) {
+  std::vector<TracingMode> forms;
+  if (device.info().capabilities.ray_query) forms.push_back(TracingMode::query);
+  if (device.info().capabilities.ray_tracing_pipeline) forms.push_back(TracingMode::pipeline);
   REQUIRE_FALSE(forms.empty());
   return forms;
 }
@@ -35,7 +35,7 @@ std::vector<TraceForm> forms_of(const rhi::Device& device) {
 void check_against_reference(rhi::Device& device, const Scene& scene) {
   const std::vector<PathRay> rays = test::rays_through(scene, 1000, 7);
   const ProbeReference reference(scene);
-  for (const TraceForm form : forms_of(device)) {
+  for (const TracingMode form : forms_of(device)) {
     CAPTURE(pathtracer::name(form));
     Prober prober(device, scene, form);
     for (const Trial& trial : trials()) {
@@ -43,7 +43,7 @@ void check_against_reference(rhi::Device& device, const Scene& scene) {
       CAPTURE(std::string(trial.name));
       const std::vector<ProbeRay> asked = rays_of(trial, rays, reference, scene);
       const std::vector<ProbeAnswer> answers = prober.answer(trial, asked);
-      const std::vector<ProbeInstance> instances = reference.instances(trial.arrangement);
+      const std::vector<ProbeInstance> instances = reference.instances(trial.instance_setup);
       REQUIRE(answers.size() == asked.size());
       std::size_t wrong = 0, hits = 0;
       for (std::size_t i = 0; i < asked.size(); ++i) {
@@ -62,8 +62,8 @@ void check_against_reference(rhi::Device& device, const Scene& scene) {
 /// What `b` is found to do otherwise than `a`, in every form of either.
 void check_no_mismatch(rhi::Device& a, rhi::Device& b, const Scene& scene) {
   const std::vector<PathRay> rays = test::rays_through(scene, 400, 11);
-  for (const TraceForm form_a : forms_of(a)) {
-    for (const TraceForm form_b : forms_of(b)) {
+  for (const TracingMode form_a : forms_of(a)) {
+    for (const TracingMode form_b : forms_of(b)) {
       CAPTURE(pathtracer::name(form_a));
       CAPTURE(pathtracer::name(form_b));
       const Probing probing = probe(a, b, scene, rays, form_a, form_b);

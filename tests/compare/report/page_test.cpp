@@ -286,11 +286,11 @@ TEST_CASE("classes can be filtered, and a click shows the events of the path") {
   pathtracer::PathEvent event;
   event.words[0] = static_cast<std::uint32_t>(pathtracer::EventKind::ray);
   classification.paths = {{.path = {.pixel = {40, 5}, .sample = 2},
-                           .partings = {{.difference_class = DifferenceClass::mismatch,
-                                         .segment = 3,
-                                         .a = event,
-                                         .b = event,
-                                         .sentence = "The ray met <i>another</i> triangle."}}}};
+                           .divergences = {{.difference_class = DifferenceClass::mismatch,
+                                            .segment = 3,
+                                            .a = event,
+                                            .b = event,
+                                            .sentence = "The ray met <i>another</i> triangle."}}}};
   const std::string events = R"json([
     {"segment": 0, "event": "ray", "fields": {"barycentrics": {"a": [0, 1], "b": [0, 0.5], "ulp": 8388608}}},
     {"segment": 0, "event": "camera", "fields": {"sample": {"a": 2}, "origin": {"a": [0, 1, 2.5]}}},

@@ -9,7 +9,7 @@
 #include "compare/statistics/bias_test.hpp"
 #include "pathtracer/load/scene_loader.hpp"
 #include "pathtracer/render/renderer.hpp"
-#include "tests/base/statistics/noise.hpp"
+#include "tests/compare/statistics/noise.hpp"
 #include "tests/support/device_test.hpp"
 
 using namespace tandem;

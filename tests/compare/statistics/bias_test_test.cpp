@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.hpp"
-#include "tests/base/statistics/noise.hpp"
+#include "tests/compare/statistics/noise.hpp"
 
 namespace tandem::compare {
 namespace {

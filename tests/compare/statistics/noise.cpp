@@ -1,4 +1,4 @@
-#include "tests/base/statistics/noise.hpp"
+#include "tests/compare/statistics/noise.hpp"
 
 #include <cmath>
 

@@ -14,7 +14,7 @@ namespace tandem::test {
 enum class NoiseKind {
   uniform,    ///< between 0.8 and 1.2
   fireflies,  ///< between 0 and 1; one in a thousand has a Pareto variate of mean 500 more, whose variance is infinite
-  rare        ///< 100 once in a hundred, else 0: lamps that are found by chance
+  rare        ///< 100 once in a hundred, else 0: lights that are found by chance
 };
 
 /// `count` independent pictures of side x side pixels, whose channels have the means 1, 0.5 and 0.25.

@@ -65,8 +65,8 @@ TANDEM_DEVICE_TEST("Every sampler and option converges to the same image of the 
   check_same_image(device, study::weekend_box(), 32);
 }
 
-TANDEM_DEVICE_TEST("Every sampler and option converges to the same image of a lamp over a floor") {
-  check_same_image(device, study::lamp_over_floor(), 16);
+TANDEM_DEVICE_TEST("Every sampler and option converges to the same image of a light over a floor") {
+  check_same_image(device, study::light_over_floor(), 16);
 }
 
 TANDEM_DEVICE_TEST("An image that is darker by a few hundredths is found out") {

@@ -44,7 +44,7 @@ TANDEM_DEVICE_TEST("Independent samples converge as N^-1/2, Sobol samples of a s
   const std::vector<study::Method> methods = {{.name = "independent"},
                                               {.name = "Sobol", .sampler = pathtracer::SamplerKind::sobol}};
   const std::optional<study::SceneResult> result =
-      study::study_scene(handle(device), study::lamp_over_floor(), methods, settings, false);
+      study::study_scene(handle(device), study::light_over_floor(), methods, settings, false);
   REQUIRE(result.has_value());
   // The errors of 256 pixels with three channels alike: the slope has a standard error of some 0.02.
   CHECK(result->methods[0].slope() == doctest::Approx(-0.5).epsilon(0.16));
@@ -52,8 +52,8 @@ TANDEM_DEVICE_TEST("Independent samples converge as N^-1/2, Sobol samples of a s
   CHECK(result->methods[1].efficiency() > result->methods[0].efficiency());
 }
 
-// The ratio grows with samples and with pixels, because edges of the lamp in the picture cost both methods the same: it
-// is 21 with 32 x 32 pixels and 256 samples of the thesis's method.
+// The ratio grows with samples and with pixels, because edges of the light in the picture cost both methods the same:
+// it is 21 with 32 x 32 pixels and 256 samples of the thesis's method.
 TANDEM_DEVICE_TEST("Lights, MIS and Sobol need far fewer samples than the thesis's method in the Cornell box") {
   const study::StudySettings settings{.size = 16, .sample_counts = {4, 16}, .reference_samples = 1024};
   const std::optional<study::SceneResult> result =

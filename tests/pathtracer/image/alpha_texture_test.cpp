@@ -30,7 +30,7 @@ const std::string quad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 2 0\nvt
 std::string error_of(const auto& action) {
   try {
     action();
-  } catch (const Error& error) {
+  } catch (const tandem::Error& error) {
     return error.what();
   }
   return "no error";

@@ -60,7 +60,7 @@ TEST_CASE("OpenEXR holds layers beside the picture, which stays what it is; PNG 
   // Five channels of four bytes each do not fit into three.
   CHECK(encode_exr(5, 3, all, {}).size() > encode_exr(5, 3, channels, {}).size());
   CHECK_THROWS_WITH_AS(write_image(folder.path() / "layers.png", image, {}, {}, layers),
-                       doctest::Contains("only an .exr has layers"), Error);
+                       doctest::Contains("only an .exr has layers"), tandem::Error);
 }
 
 TEST_CASE("PNG is sRGB-encoded, clamped and keeps the metadata") {
@@ -78,7 +78,8 @@ TEST_CASE("PNG is sRGB-encoded, clamped and keeps the metadata") {
   // Half a step of 1/255 in the encoding, where its slope is at most 12.92.
   for (std::size_t i : {0u, 3u})
     for (int channel = 0; channel < 3; ++channel)
-      CHECK(std::abs(srgb_encode(read.pixels[i][channel]) - srgb_encode(image.pixels[i][channel])) < 0.51f / 255);
+      CHECK(std::abs(tandem::srgb_encode(read.pixels[i][channel]) - tandem::srgb_encode(image.pixels[i][channel])) <
+            0.51f / 255);
   CHECK(read.pixels[1].x == 0);
   CHECK(read.pixels[1].y == 1);
   CHECK(read.pixels[2] == glm::vec3(0, 1, 0));
@@ -86,12 +87,12 @@ TEST_CASE("PNG is sRGB-encoded, clamped and keeps the metadata") {
 }
 
 TEST_CASE("sRGB agrees with the standard and with its inverse") {
-  CHECK(srgb_encode_8bit(0) == 0);
-  CHECK(srgb_encode_8bit(1) == 255);
-  CHECK(srgb_encode_8bit(0.5f) == 188);   // 1.055 * 0.5^(1/2.4) - 0.055 = 0.7354 = 187.5 / 255
-  CHECK(srgb_encode_8bit(0.18f) == 118);  // 0.4614
-  CHECK(srgb_encode(0.001f) == doctest::Approx(0.01292f));
-  for (int i = 0; i <= 255; ++i) CHECK(srgb_encode_8bit(srgb_decode(float(i) / 255)) == i);
+  CHECK(tandem::srgb_encode_8bit(0) == 0);
+  CHECK(tandem::srgb_encode_8bit(1) == 255);
+  CHECK(tandem::srgb_encode_8bit(0.5f) == 188);   // 1.055 * 0.5^(1/2.4) - 0.055 = 0.7354 = 187.5 / 255
+  CHECK(tandem::srgb_encode_8bit(0.18f) == 118);  // 0.4614
+  CHECK(tandem::srgb_encode(0.001f) == doctest::Approx(0.01292f));
+  for (int i = 0; i <= 255; ++i) CHECK(tandem::srgb_encode_8bit(tandem::srgb_decode(float(i) / 255)) == i);
 }
 
 TEST_CASE("A place that cannot be written is known beforehand, and nothing is left there") {
@@ -104,8 +105,8 @@ TEST_CASE("A place that cannot be written is known beforehand, and nothing is le
        {folder.path(), folder.path() / "a.jpg", folder.path() / "a", folder.path() / "absent" / "a.png",
         folder.path() / "file" / "a.png", std::filesystem::path("/proc/a.png"), std::filesystem::path()}) {
     CAPTURE(path);
-    CHECK_THROWS_AS(check_image_path(path), Error);
-    CHECK_THROWS_AS(write_image(path, ramp(2, 2), {}), Error);
+    CHECK_THROWS_AS(check_image_path(path), tandem::Error);
+    CHECK_THROWS_AS(write_image(path, ramp(2, 2), {}), tandem::Error);
   }
   CHECK(folder.size() == 1);
 }
@@ -113,13 +114,13 @@ TEST_CASE("A place that cannot be written is known beforehand, and nothing is le
 TEST_CASE("What is no picture cannot be read") {
   const ScratchFolder folder;
   folder.write("a.exr", "no picture");
-  CHECK_THROWS_AS(read_image(folder.path() / "a.exr"), Error);
-  CHECK_THROWS_AS(read_image(folder.path() / "absent.exr"), Error);
-  CHECK_THROWS_AS(write_image(folder.path() / "b.exr", Image{}, {}), Error);
+  CHECK_THROWS_AS(read_image(folder.path() / "a.exr"), tandem::Error);
+  CHECK_THROWS_AS(read_image(folder.path() / "absent.exr"), tandem::Error);
+  CHECK_THROWS_AS(write_image(folder.path() / "b.exr", Image{}, {}), tandem::Error);
 }
 
 TEST_CASE("A header that claims more than memory holds is an error") {
   const ScratchFolder folder;
   folder.write("a.ppm", "P6\n100000 100000\n255\n");
-  CHECK_THROWS_WITH_AS(read_image(folder.path() / "a.ppm"), doctest::Contains("100000x100000"), Error);
+  CHECK_THROWS_WITH_AS(read_image(folder.path() / "a.ppm"), doctest::Contains("100000x100000"), tandem::Error);
 }

@@ -45,7 +45,7 @@ std::vector<std::byte> bytes_of(const std::filesystem::path& path) {
 std::string error_of(const auto& action) {
   try {
     action();
-  } catch (const Error& error) {
+  } catch (const tandem::Error& error) {
     return error.what();
   }
   return "no error";
@@ -81,7 +81,7 @@ TEST_CASE("Sixteen bits stay as data, and become linear floats as colours") {
   const std::vector<float> values = values_of<float>(color);
   REQUIRE(values.size() == 8);
   CHECK(values[0] == 1);
-  CHECK(values[1] == srgb_decode(32768 / 65535.0f));
+  CHECK(values[1] == tandem::srgb_decode(32768 / 65535.0f));
   CHECK(values[2] == 0);
   CHECK(values[3] == 1);
 }

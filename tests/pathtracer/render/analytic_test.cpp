@@ -56,24 +56,24 @@ TANDEM_DEVICE_TEST("Between parallel mirrors every reflection takes its part") {
 
 TANDEM_DEVICE_TEST("A slab of glass displaces what is behind it and takes what Fresnel's equations say") {
   constexpr double ior = 1.5, thickness = 0.6;
-  const std::string lamp = "v -20 -20 -5\nv 0 -20 -5\nv 0 20 -5\nv -20 20 -5\nusemtl lamp\nf 1 2 3 4\n";
+  const std::string light = "v -20 -20 -5\nv 0 -20 -5\nv 0 20 -5\nv -20 20 -5\nusemtl light\nf 1 2 3 4\n";
   const std::string slab =
       "v -20 -20 0\nv 20 -20 0\nv 20 20 0\nv -20 20 0\nv -20 -20 -0.6\nv 20 -20 -0.6\nv 20 20 -0.6\nv -20 20 -0.6\n"
       "usemtl glass\nf 5 6 7 8\nf 12 11 10 9\nf 6 10 11 7\nf 9 5 8 12\nf 8 7 11 12\nf 9 10 6 5\n";
-  const std::string materials = "newmtl lamp\nKd 0\nKe 1\nnewmtl glass\nillum 7\nKs 1\nTf 1 1 1\nNi 1.5\n";
+  const std::string materials = "newmtl light\nKd 0\nKe 1\nnewmtl glass\nillum 7\nKs 1\nTf 1 1 1\nNi 1.5\n";
   for (const double degrees : {0.0, 20.0, 40.0, 60.0}) {
     CAPTURE(degrees);
     const double angle = degrees * std::numbers::pi / 180;
-    // Parallel rays, of which without glass one half meets the lamp, whose edge is at x = 0.
+    // Parallel rays, of which without glass one half meets the light, whose edge is at x = 0.
     const glm::vec3 forward(std::sin(angle), 0, -std::cos(angle));
     const glm::vec3 edge(0, 0, -5);
     const Camera camera{
         .kind = CameraKind::orthographic, .position = edge - 20.0f * forward, .target = edge, .height = 0.5f};
-    // Three segments: to the glass, through it, to the lamp. What is reflected inside would need more.
+    // Three segments: to the glass, through it, to the light. What is reflected inside would need more.
     const RenderSettings settings{
         .width = 64, .height = 8, .max_depth = 3, .camera = camera, .background = glm::vec3(0)};
     constexpr double view_width = 4;
-    CHECK(view_width * mean(rendered(device, load_text(lamp, materials), settings, 16)) ==
+    CHECK(view_width * mean(rendered(device, load_text(light, materials), settings, 16)) ==
           doctest::Approx(view_width / 2).epsilon(0.01));
 
     const double refracted = std::asin(std::sin(angle) / ior);
@@ -81,7 +81,7 @@ TANDEM_DEVICE_TEST("A slab of glass displaces what is behind it and takes what F
     const double p = (ior * std::cos(angle) - std::cos(refracted)) / (ior * std::cos(angle) + std::cos(refracted));
     const double transmitted = std::pow(1 - 0.5 * (s * s + p * p), 2);
     const double displacement = thickness * std::sin(angle - refracted) / std::cos(refracted);
-    const double lit = view_width * mean(rendered(device, load_text(lamp + slab, materials), settings, 256));
+    const double lit = view_width * mean(rendered(device, load_text(light + slab, materials), settings, 256));
     // A path is transmitted or not: five deviations of the mean of 131072 of them are 0.7 % of the width.
     CHECK(lit == doctest::Approx(transmitted * (view_width / 2 + displacement)).epsilon(0.007));
   }

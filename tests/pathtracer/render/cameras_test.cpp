@@ -171,7 +171,7 @@ TANDEM_DEVICE_TEST("A camera that moves blurs a ball that stands still as if the
   const Scene still = ball({0, 0, 0}, 0.25f, diffuse_material(glm::vec3(0)));
   Scene moved = ball({-0.6f, 0, 0}, 0.25f, diffuse_material(glm::vec3(0)));
   moved.spheres[0].motion = {1.2f, 0, 0};
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Image a = test::rendered(device, still, view(moving), 64, form);
     const Image b = test::rendered(device, moved, view(front), 64, form);

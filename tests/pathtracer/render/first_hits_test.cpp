@@ -15,7 +15,7 @@ using namespace tandem;
 using namespace tandem::pathtracer;
 using tandem::test::handle;
 using tandem::test::ScratchFolder;
-using tandem::test::trace_forms;
+using tandem::test::tracing_modes;
 
 namespace {
 
@@ -52,7 +52,7 @@ std::uint32_t whole(const std::vector<ImageChannel>& channels, const std::string
 
 TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what is seen, in both forms") {
   const Scene scene = two_squares();
-  for (const TraceForm form : trace_forms(device)) {
+  for (const TracingMode form : tracing_modes(device)) {
     CAPTURE(name(form));
     const auto red = Renderer(handle(device), scene, looking_at(0), form).first_hits(6);
     for (const std::size_t pixel : {0u, 27u, 63u}) {

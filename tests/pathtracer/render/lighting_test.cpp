@@ -95,7 +95,7 @@ TANDEM_DEVICE_TEST("Lights that change while rendering give what a renderer made
   const RenderSettings wide{.width = 16, .height = 16, .max_depth = 4, .camera = Camera{.position = {0, 1, 3}}};
   Renderer renderer(handle(device), scene, wide);
   renderer.render(4);
-  const Image lamp_alone = renderer.image();
+  const Image light_alone = renderer.image();
 
   Scene lit = scene;
   lit.lights = {aside, sun, spot};
@@ -105,7 +105,7 @@ TANDEM_DEVICE_TEST("Lights that change while rendering give what a renderer made
   renderer.render(4);
   made_for_them.render(4);
   CHECK(renderer.image().pixels == made_for_them.image().pixels);
-  CHECK(renderer.image().pixels != lamp_alone.pixels);
+  CHECK(renderer.image().pixels != light_alone.pixels);
 
   PunctualLight broken = sun;
   broken.direction = glm::vec3(0);
@@ -115,5 +115,5 @@ TANDEM_DEVICE_TEST("Lights that change while rendering give what a renderer made
 
   renderer.set_lights({});
   renderer.render(4);
-  CHECK(renderer.image().pixels == lamp_alone.pixels);
+  CHECK(renderer.image().pixels == light_alone.pixels);
 }

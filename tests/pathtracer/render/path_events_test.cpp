@@ -36,10 +36,10 @@ std::vector<PathId> all_paths() {
   return paths;
 }
 
-std::vector<TraceForm> forms_of(const rhi::Device& device) {
-  std::vector<TraceForm> forms;
-  if (device.info().capabilities.ray_query) forms.push_back(TraceForm::query);
-  if (device.info().capabilities.ray_tracing_pipeline) forms.push_back(TraceForm::pipeline);
+std::vector<TracingMode> forms_of(const rhi::Device& device) {
+  std::vector<TracingMode> forms;
+  if (device.info().capabilities.ray_query) forms.push_back(TracingMode::query);
+  if (device.info().capabilities.ray_tracing_pipeline) forms.push_back(TracingMode::pipeline);
   REQUIRE_FALSE(forms.empty());
   return forms;
 }
@@ -93,9 +93,9 @@ void check_rays(Renderer& renderer, const Scene& scene, const std::vector<PathId
   for (std::size_t i = 0; i < rays.size(); ++i) {
     equal = equal && answers[i] == rays[i].answer;
     if (rays[i].kind != RayKind::closest) continue;
-    any_hit = any_hit || answers[i] != no_triangle;
-    any_miss = any_miss || answers[i] == no_triangle;
-    if (answers[i] != no_triangle) CHECK(answers[i] < scene.triangles.size() + scene.spheres.size());
+    any_hit = any_hit || answers[i] != no_primitive;
+    any_miss = any_miss || answers[i] == no_primitive;
+    if (answers[i] != no_primitive) CHECK(answers[i] < scene.triangles.size() + scene.spheres.size());
   }
   CHECK(equal);
   CHECK(any_hit);
@@ -156,7 +156,7 @@ void check_resumption(Renderer& renderer, const std::vector<PathId>& paths, cons
 void check_events(rhi::Device& device, const Scene& scene) {
   const std::vector<PathId> paths = all_paths();
   std::vector<PathEvents> first_form;
-  for (const TraceForm form : forms_of(device)) {
+  for (const TracingMode form : forms_of(device)) {
     CAPTURE(name(form));
     Renderer renderer(handle(device), scene, small, form);
     REQUIRE(renderer.render(samples));
@@ -201,8 +201,8 @@ TANDEM_DEVICE_TEST("What a device reports of a hit belongs to the primitive that
       if (event.kind() != EventKind::ray || event.words[event_word::ray_kind] != 0) continue;
       const std::uint32_t answer = event.words[event_word::ray_answer];
       const auto kind = static_cast<HitKind>(event.words[event_word::hit_kind]);
-      REQUIRE((kind == HitKind::none) == (answer == no_triangle));
-      if (answer == no_triangle) continue;
+      REQUIRE((kind == HitKind::none) == (answer == no_primitive));
+      if (answer == no_primitive) continue;
       ++hits;
       const auto corner = [&](int i) { return glm::dvec3(scene.positions[scene.triangles[answer].vertices[i]]); };
       const double u = event.number(event_word::hit_barycentrics), v = event.number(event_word::hit_barycentrics + 1);

@@ -6,21 +6,21 @@
 
 namespace tandem::test {
 
-using pathtracer::TraceForm;
+using pathtracer::TracingMode;
 
 rhi::DeviceHandle handle(rhi::Device& device) { return {std::shared_ptr<void>(), &device}; }
 
-std::vector<TraceForm> trace_forms(const rhi::Device& device) {
-  std::vector<TraceForm> forms;
-  if (device.info().capabilities.ray_query) forms.push_back(TraceForm::query);
-  if (device.info().capabilities.ray_tracing_pipeline) forms.push_back(TraceForm::pipeline);
+std::vector<TracingMode> tracing_modes(const rhi::Device& device) {
+  std::vector<TracingMode> forms;
+  if (device.info().capabilities.ray_query) forms.push_back(TracingMode::query);
+  if (device.info().capabilities.ray_tracing_pipeline) forms.push_back(TracingMode::pipeline);
   REQUIRE_FALSE(forms.empty());
   return forms;
 }
 
 pathtracer::Image rendered(rhi::Device& device, const pathtracer::Scene& scene,
                            const pathtracer::RenderSettings& settings, std::uint32_t samples,
-                           std::optional<TraceForm> trace) {
+                           std::optional<TracingMode> trace) {
   pathtracer::Renderer renderer(handle(device), scene, settings, trace);
   REQUIRE(renderer.render(samples));
   return renderer.image();

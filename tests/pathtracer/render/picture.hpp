@@ -12,11 +12,11 @@ namespace tandem::test {
 rhi::DeviceHandle handle(rhi::Device& device);
 
 /// The forms of tracing that the device has; at least one.
-std::vector<pathtracer::TraceForm> trace_forms(const rhi::Device& device);
+std::vector<pathtracer::TracingMode> tracing_modes(const rhi::Device& device);
 
 pathtracer::Image rendered(rhi::Device& device, const pathtracer::Scene& scene,
                            const pathtracer::RenderSettings& settings, std::uint32_t samples,
-                           std::optional<pathtracer::TraceForm> trace = {});
+                           std::optional<pathtracer::TracingMode> trace = {});
 
 /// Mean of the red channel over all pixels, and its standard error from the spread of the pixels, which have to be
 /// independent estimates of the same value.

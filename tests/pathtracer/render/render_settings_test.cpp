@@ -14,7 +14,7 @@ namespace {
 std::string error_of(const RenderSettings& settings) {
   try {
     check(settings);
-  } catch (const Error& error) {
+  } catch (const tandem::Error& error) {
     return error.what();
   }
   return "no error";

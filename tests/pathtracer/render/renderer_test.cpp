@@ -72,8 +72,8 @@ TANDEM_DEVICE_TEST("Depth bounds the bounces that are seen: 1, 1 + 1/2, 1 + 1/2 
   }
 }
 
-TANDEM_DEVICE_TEST("Direct light of a small lamp is that of the analytic form factor") {
-  // A lamp of 0.4 x 0.2 at height 2 over a floor of albedo 0.8.
+TANDEM_DEVICE_TEST("Direct light of a small light is that of the analytic form factor") {
+  // A light of 0.4 x 0.2 at height 2 over a floor of albedo 0.8.
   const Scene scene = load_text(
       "v -20 0 -20\nv -20 0 20\nv 20 0 20\nv 20 0 -20\nf 1 2 3 4\n"
       "v -0.2 2 -0.1\nv 0.2 2 -0.1\nv 0.2 2 0.1\nv -0.2 2 0.1\nusemtl b\nf 5 6 7 8\n",

@@ -98,7 +98,7 @@ TANDEM_DEVICE_TEST(
     "Ray queries and a pipeline see the same spheres, still and moving, opaque and not, to the last bit") {
   const Scene scene = one_weekend();
   std::vector<Image> images;
-  for (const TraceForm form : test::trace_forms(device))
+  for (const TracingMode form : test::tracing_modes(device))
     images.push_back(test::rendered(device, scene, one_weekend_view, 4, form));
   for (const Image& image : images) CHECK(image.pixels == images.front().pixels);
   const test::Estimate estimate = test::estimate(images.front());
@@ -122,7 +122,7 @@ TEST_CASE("All devices see the same spheres") {
 TANDEM_DEVICE_TEST("A scene of one sphere and nothing else shows a disk, as large as perspective makes it") {
   Scene scene = empty_scene();
   add_sphere(scene, {0, 0, 0}, 0.75f, add_material(scene, diffuse_material(glm::vec3(0))));
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Image image = test::rendered(device, scene, front_view, 16, form);
     // Its silhouette is the circle of the tangents from the camera, on the plane z = 0, 2 high.
@@ -143,7 +143,7 @@ TANDEM_DEVICE_TEST("A moving sphere covers each pixel for the part of the time t
   Scene scene = empty_scene();
   add_sphere(scene, {-0.6f, 0, 0}, 0.25f, add_material(scene, diffuse_material(glm::vec3(0))), {1.2f, 0, 0});
   constexpr std::uint32_t samples = 256;
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Image image = test::rendered(device, scene, front_view, samples, form);
     double worst = 0;
@@ -188,7 +188,7 @@ TANDEM_DEVICE_TEST(
   GpuMaterial material = half_covering(glm::vec3(0));
   material.opacity = 0.5f;
   add_sphere(scene, {0, 0, 0}, 5, add_material(scene, material));
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const test::Estimate estimate = test::estimate(test::rendered(device, scene, front_view, 64, form));
     CHECK(std::abs(estimate.mean - 0.25) < 4 * estimate.standard_error);

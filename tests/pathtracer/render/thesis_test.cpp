@@ -35,7 +35,7 @@ void check_devices_agree(const std::filesystem::path& path, double least_bit_equ
     CHECK(metrics.non_finite_b == 0);
     CHECK(metrics.mean_a > 0.01);
     // A path that takes another course changes its pixel by about the mean, or by thousands of times as much where it
-    // happens to pass close to a lamp. Of 36864 paths a few differ, in cubes.obj some ten: 3e-4 of the mean.
+    // happens to pass close to a light. Of 36864 paths a few differ, in cubes.obj some ten: 3e-4 of the mean.
     CHECK(metrics.mean_b == doctest::Approx(metrics.mean_a).epsilon(1e-3));
     for (const std::string& warning : test::take_warnings(name)) FAIL_CHECK(warning);
   }

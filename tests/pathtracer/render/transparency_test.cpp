@@ -39,12 +39,12 @@ const Camera ahead{.position = {0, 0, 1}, .target = {0, 0, 0}, .up = {0, 1, 0}, 
 const RenderSettings emission_only{
     .width = 64, .height = 64, .max_depth = 1, .camera = ahead, .background = glm::vec3(1)};
 
-/// A floor of albedo 0.8 at y = 0 under a lamp of 0.2 x 0.2 at height 2, seen from the side, away from the lamp.
+/// A floor of albedo 0.8 at y = 0 under a light of 0.2 x 0.2 at height 2, seen from the side, away from the light.
 const std::string lit_floor =
     "usemtl floor\nv -5 0 -5\nv -5 0 5\nv 5 0 5\nv 5 0 -5\nf -4 -3 -2 -1\n"
-    "usemtl lamp\nv -0.1 2 -0.1\nv 0.1 2 -0.1\nv 0.1 2 0.1\nv -0.1 2 0.1\nf -4 -3 -2 -1\n";
-const std::string plate_below_lamp = "usemtl plate\nv -3 1.5 -3\nv 3 1.5 -3\nv 3 1.5 3\nv -3 1.5 3\nf -4 -3 -2 -1\n";
-const std::string floor_materials = "newmtl floor\nKd 0.8\nnewmtl lamp\nKd 0\nKe 50\n";
+    "usemtl light\nv -0.1 2 -0.1\nv 0.1 2 -0.1\nv 0.1 2 0.1\nv -0.1 2 0.1\nf -4 -3 -2 -1\n";
+const std::string plate_below_light = "usemtl plate\nv -3 1.5 -3\nv 3 1.5 -3\nv 3 1.5 3\nv -3 1.5 3\nf -4 -3 -2 -1\n";
+const std::string floor_materials = "newmtl floor\nKd 0.8\nnewmtl light\nKd 0\nKe 50\n";
 // The camera sees a thousandth of a unit, over which the light is the same to 1e-3.
 const RenderSettings floor_view{
     .width = 64,
@@ -58,7 +58,7 @@ TANDEM_DEVICE_TEST("A plate of opacity 1/4 lets 3/4 of the background pass, two 
   const std::string plate = "newmtl plate\nKd 0\nd 0.25\n";
   const Scene one = load_text(square("plate", 4, 0), plate);
   const Scene two = load_text(square("plate", 4, 0) + square("plate", 8, -1), plate);
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     // 2^18 samples that are each 0 or 1: a standard error of 1e-3. Four of them are missed once in 16000 seeds.
     const Estimate once = estimate(rendered(device, one, emission_only, 64, form));
@@ -70,10 +70,10 @@ TANDEM_DEVICE_TEST("A plate of opacity 1/4 lets 3/4 of the background pass, two 
   }
 }
 
-TANDEM_DEVICE_TEST("A plate of opacity 1/4 before a lamp lets 3/4 of its light pass") {
+TANDEM_DEVICE_TEST("A plate of opacity 1/4 before a light lets 3/4 of its light pass") {
   const Scene without = load_text(lit_floor, floor_materials);
-  const Scene with = load_text(lit_floor + plate_below_lamp, floor_materials + "newmtl plate\nKd 0\nd 0.25\n");
-  for (const TraceForm form : test::trace_forms(device)) {
+  const Scene with = load_text(lit_floor + plate_below_light, floor_materials + "newmtl plate\nKd 0\nd 0.25\n");
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Estimate all = estimate(rendered(device, without, floor_view, 64, form));
     const Estimate part = estimate(rendered(device, with, floor_view, 64, form));
@@ -84,26 +84,26 @@ TANDEM_DEVICE_TEST("A plate of opacity 1/4 before a lamp lets 3/4 of its light p
 
 TANDEM_DEVICE_TEST("An opacity of 0 changes no bit of the picture behind") {
   const Scene without = load_text(lit_floor, floor_materials);
-  const Scene with = load_text(plate_below_lamp + lit_floor, "newmtl plate\nd 0\n" + floor_materials);
+  const Scene with = load_text(plate_below_light + lit_floor, "newmtl plate\nd 0\n" + floor_materials);
   RenderSettings settings = floor_view;
   settings.camera->vertical_fov = 60;
   settings.max_depth = 6;
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     CHECK(rendered(device, with, settings, 4, form).pixels == rendered(device, without, settings, 4, form).pixels);
   }
 }
 
-TANDEM_DEVICE_TEST("A lamp of opacity 1/2 gives half its light, seen and sampled") {
-  const std::string half = "newmtl floor\nKd 0.8\nnewmtl lamp\nKd 0\nKe 100\nd 0.5\n";
-  const Scene seen = load_text(square("lamp", 4, 0), "newmtl lamp\nKd 0\nKe 2\nd 0.5\n");
+TANDEM_DEVICE_TEST("A light of opacity 1/2 gives half its light, seen and sampled") {
+  const std::string half = "newmtl floor\nKd 0.8\nnewmtl light\nKd 0\nKe 100\nd 0.5\n";
+  const Scene seen = load_text(square("light", 4, 0), "newmtl light\nKd 0\nKe 2\nd 0.5\n");
   RenderSettings black = emission_only;
   black.background = glm::vec3(0);
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Estimate direct = estimate(rendered(device, seen, black, 64, form));
     CHECK(std::abs(direct.mean - 1) < 4 * direct.standard_error);
-    // Where lamps are sampled the opacity is a factor; scattered rays meet the lamp half of the time.
+    // Where lights are sampled the opacity is a factor; scattered rays meet the light half of the time.
     const Estimate covered = estimate(rendered(device, load_text(lit_floor, half), floor_view, 64, form));
     const Estimate dimmed = estimate(rendered(device, load_text(lit_floor, floor_materials), floor_view, 64, form));
     CHECK(covered.standard_error < 0.01 * covered.mean);
@@ -121,7 +121,7 @@ TANDEM_DEVICE_TEST("A cut-out is seen texel by texel, repeated, upright") {
   RenderSettings settings = emission_only;
   settings.width = 32;
   settings.height = 32;
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Image image = rendered(device, scene, settings, 8, form);
     int wrong = 0;
@@ -134,7 +134,7 @@ TANDEM_DEVICE_TEST("A cut-out is seen texel by texel, repeated, upright") {
 
 TANDEM_DEVICE_TEST("A texel between 0 and 255 is an opacity, which d multiplies") {
   const Scene scene = load_text(square("a", 4, 0), "newmtl a\nKd 0\nd 0.5\nmap_d mask.pgm\n", "P2\n1 1\n255\n153\n");
-  for (const TraceForm form : test::trace_forms(device)) {
+  for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     const Estimate result = estimate(rendered(device, scene, emission_only, 64, form));
     CHECK(std::abs(result.mean - (1 - 0.5 * 153 / 255)) < 4 * result.standard_error);

@@ -113,20 +113,20 @@ TEST_CASE("A camera that looks nowhere is an error") {
   const Camera good{.position = {0, 0, 1}, .target = {0, 0, 0}, .up = {0, 1, 0}, .vertical_fov = 40};
   Camera camera = good;
   camera.target = camera.position;
-  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), Error);
+  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), tandem::Error);
   camera = good;
   camera.up = {0, 0, 3};
-  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), Error);
+  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), tandem::Error);
   camera = good;
   camera.up = {0, 0, 0};
-  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), Error);
+  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), tandem::Error);
   camera = good;
   camera.position.x = std::numeric_limits<float>::quiet_NaN();
-  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), Error);
+  CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), tandem::Error);
   for (const float fov : {0.0f, 180.0f, -40.0f, std::numeric_limits<float>::quiet_NaN()}) {
     camera = good;
     camera.vertical_fov = fov;
-    CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), Error);
+    CHECK_THROWS_AS(set_camera(constants, camera, 1, 1), tandem::Error);
   }
 }
 
@@ -167,7 +167,7 @@ TEST_CASE("A number of a camera that is out of range is named") {
   const auto message = [&](const Camera& camera) -> std::string {
     try {
       set_camera(constants, camera, 1, 1);
-    } catch (const Error& error) {
+    } catch (const tandem::Error& error) {
       return error.what();
     }
     return "";

@@ -92,9 +92,9 @@ TEST_CASE("A linear filter spreads one texel over its neighbours, around the bac
 TEST_CASE("An environment must be a whole image") {
   Scene scene = scene_with_map(2, 1, {1, 1}, TextureFilter::linear);
   scene.textures[0].gpu.u_row = {2, 0, 0};
-  CHECK_THROWS_WITH_AS(environment_cells(scene), "the environment of test is not a whole image", Error);
+  CHECK_THROWS_WITH_AS(environment_cells(scene), "the environment of test is not a whole image", tandem::Error);
   scene.textures[0].gpu = {.kind = TextureKind::checker};
-  CHECK_THROWS_WITH_AS(environment_luminance(scene), "the environment of test is not a whole image", Error);
+  CHECK_THROWS_WITH_AS(environment_luminance(scene), "the environment of test is not a whole image", tandem::Error);
 }
 
 TEST_CASE("A rotation turns the map counter-clockwise seen from above") {

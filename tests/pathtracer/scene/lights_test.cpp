@@ -150,7 +150,7 @@ TEST_CASE("Numbers of a light that make no sense are refused, naming the light")
   add_light(scene, 1, glm::vec3(1));
   const auto refused = [&](const PunctualLight& light, const std::string& message) {
     scene.lights = {{.radiance = glm::vec3(1)}, light};
-    CHECK_THROWS_WITH_AS(build_lights(scene), ("light 1 of hall.json: " + message).c_str(), Error);
+    CHECK_THROWS_WITH_AS(build_lights(scene), ("light 1 of hall.json: " + message).c_str(), tandem::Error);
   };
   refused({.radiance = glm::vec3(-1)}, "its intensity is not finite and at least 0");
   refused({.position = glm::vec3(std::nanf("")), .radiance = glm::vec3(1)}, "its position is not finite");

@@ -76,6 +76,6 @@ TEST_CASE("A transform moves spheres, lights and the camera, and keeps the outsi
 
 TEST_CASE("Spheres stay spheres, and positions floats") {
   Scene scene;
-  CHECK_THROWS_AS(append(scene, model(), glm::scale(glm::dmat4(1.0), glm::dvec3(1, 2, 1))), Error);
-  CHECK_THROWS_AS(append(scene, model(), glm::scale(glm::dmat4(1.0), glm::dvec3(1e13))), Error);
+  CHECK_THROWS_AS(append(scene, model(), glm::scale(glm::dmat4(1.0), glm::dvec3(1, 2, 1))), tandem::Error);
+  CHECK_THROWS_AS(append(scene, model(), glm::scale(glm::dmat4(1.0), glm::dvec3(1e13))), tandem::Error);
 }

@@ -44,7 +44,7 @@ struct Comparison {
   }
 
   std::uint64_t count(DifferenceClass difference_class) const {
-    return result.parting_counts[static_cast<std::size_t>(difference_class)];
+    return result.divergence_counts[static_cast<std::size_t>(difference_class)];
   }
 
   rhi::DeviceHandle exact;
@@ -54,15 +54,15 @@ struct Comparison {
 };
 
 /// The first mismatch of the first path that has one.
-const Parting* first_mismatch(const Classification& result) {
+const Divergence* first_mismatch(const Classification& result) {
   for (const ClassifiedPath& path : result.paths)
-    for (const Parting& parting : path.partings)
-      if (parting.difference_class == DifferenceClass::mismatch) return &parting;
+    for (const Divergence& divergence : path.divergences)
+      if (divergence.difference_class == DifferenceClass::mismatch) return &divergence;
   return nullptr;
 }
 
-std::string field_of(const Parting& parting) {
-  return std::string(name(parting.a.kind())) + ": " + (parting.field ? parting.field->name : "");
+std::string field_of(const Divergence& divergence) {
+  return std::string(name(divergence.a.kind())) + ": " + (divergence.field ? divergence.field->name : "");
 }
 
 }  // namespace
@@ -74,8 +74,8 @@ TANDEM_DEVICE_TEST("A device and the exact one differ in nothing that rounding d
   CHECK(found.result.traced_paths >= 64 * samples);
   CHECK(found.result.mismatches() == 0);
   for (const ClassifiedPath& path : found.result.paths)
-    for (const Parting& parting : path.partings)
-      if (parting.difference_class == DifferenceClass::mismatch) MESSAGE(parting.sentence);
+    for (const Divergence& divergence : path.divergences)
+      if (divergence.difference_class == DifferenceClass::mismatch) MESSAGE(divergence.sentence);
 }
 
 TANDEM_DEVICE_TEST("A device is the same as itself") {
@@ -84,7 +84,7 @@ TANDEM_DEVICE_TEST("A device is the same as itself") {
   CHECK(found.result.differing_pixels == 0);
   CHECK(found.result.differing_paths == 0);
   CHECK(found.result.paths.empty());
-  if (const Parting* const parting = first_mismatch(found.result)) MESSAGE(parting->sentence);
+  if (const Divergence* const divergence = first_mismatch(found.result)) MESSAGE(divergence->sentence);
   CHECK(found.result.mismatches() == 0);
 }
 
@@ -93,13 +93,13 @@ TANDEM_DEVICE_TEST("Another albedo is a mismatch of the weight with which a path
   Scene other = scene;
   for (GpuMaterial& material : other.materials) material.base_color *= 0.99f;
   const Comparison found(device, scene, device, other);
-  const Parting* const parting = first_mismatch(found.result);
-  REQUIRE(parting);
-  CAPTURE(parting->sentence);
+  const Divergence* const divergence = first_mismatch(found.result);
+  REQUIRE(divergence);
+  CAPTURE(divergence->sentence);
   // Light that is reflected comes before: its estimate is the first value that knows of the albedo.
-  const bool is_albedo = field_of(*parting) == "light value: bsdf" || field_of(*parting) == "scatter: weight";
+  const bool is_albedo = field_of(*divergence) == "light value: bsdf" || field_of(*divergence) == "scatter: weight";
   CHECK(is_albedo);
-  CHECK(parting->segment == 0);
+  CHECK(divergence->segment == 0);
   CHECK(found.result.mismatches() > 0);
   CHECK(found.count(DifferenceClass::mismatch) >= found.result.mismatches());  // a path may have several
 }
@@ -109,10 +109,11 @@ TANDEM_DEVICE_TEST("Another light is a mismatch of what arrives from it") {
   Scene other = scene;
   for (GpuMaterial& material : other.materials) material.emission *= 1.01f;
   const Comparison found(device, scene, device, other);
-  const Parting* const parting = first_mismatch(found.result);
-  REQUIRE(parting);
-  CAPTURE(parting->sentence);
-  const bool is_light = field_of(*parting) == "light sample: radiance" || field_of(*parting) == "emission: radiance";
+  const Divergence* const divergence = first_mismatch(found.result);
+  REQUIRE(divergence);
+  CAPTURE(divergence->sentence);
+  const bool is_light =
+      field_of(*divergence) == "light sample: radiance" || field_of(*divergence) == "emission: radiance";
   CHECK(is_light);
 }
 
@@ -124,10 +125,10 @@ TANDEM_DEVICE_TEST("A vertex in another place is a mismatch of a hit or of what 
   for (glm::vec3& position : other.positions)
     if (position.x == box.minimum.x && position.y == box.minimum.y) position.x -= 0.02f * box.extent().x;
   const Comparison found(device, scene, device, other);
-  const Parting* const parting = first_mismatch(found.result);
-  REQUIRE(parting);
-  CAPTURE(parting->sentence);
-  const bool is_geometry = parting->a.kind() == EventKind::ray || parting->a.kind() == EventKind::surface;
+  const Divergence* const divergence = first_mismatch(found.result);
+  REQUIRE(divergence);
+  CAPTURE(divergence->sentence);
+  const bool is_geometry = divergence->a.kind() == EventKind::ray || divergence->a.kind() == EventKind::surface;
   CHECK(is_geometry);
 }
 

@@ -196,13 +196,13 @@ TEST_CASE("errors in high dynamic range do not depend on how bright both images 
   CHECK(brighter.errors.mean == doctest::Approx(errors.errors.mean).epsilon(1e-5));
 }
 
-TEST_CASE("high dynamic range finds what clamping hides, in lamps and in the dark") {
+TEST_CASE("high dynamic range finds what clamping hides, in lights and in the dark") {
   pathtracer::Image a = constant_image(30, 30, glm::vec3(0.0001F));
   for (std::size_t index = 0; index < 300; ++index) a.pixels[index] = glm::vec3(50.0F);
-  pathtracer::Image brighter_lamp = a;
-  for (std::size_t index = 0; index < 300; ++index) brighter_lamp.pixels[index] = glm::vec3(100.0F);
-  CHECK(flip(a, brighter_lamp).largest == 0.0);
-  CHECK(hdr_flip(a, brighter_lamp).errors.largest > 0.1);
+  pathtracer::Image brighter_light = a;
+  for (std::size_t index = 0; index < 300; ++index) brighter_light.pixels[index] = glm::vec3(100.0F);
+  CHECK(flip(a, brighter_light).largest == 0.0);
+  CHECK(hdr_flip(a, brighter_light).errors.largest > 0.1);
   pathtracer::Image other_dark = a;
   for (std::size_t index = 300; index < 900; ++index) other_dark.pixels[index] = glm::vec3(0.0002F);
   CHECK(flip(a, other_dark).errors[29 * 30 + 15] < 0.02F);

@@ -17,7 +17,7 @@ std::string error_of(std::string_view name, std::string_view content) {
   const ScratchFolder folder;
   try {
     load_gltf(folder.write(name, content));
-  } catch (const Error& error) {
+  } catch (const tandem::Error& error) {
     return error.what();
   }
   return "no error";
@@ -43,7 +43,7 @@ void check_sentence(const std::string& sentence, std::string_view object, std::s
 }  // namespace
 
 TEST_CASE("glTF: files that are none") {
-  CHECK_THROWS_AS(load_gltf("/nowhere/test.gltf"), Error);
+  CHECK_THROWS_AS(load_gltf("/nowhere/test.gltf"), tandem::Error);
   for (const char* text :
        {"", "no JSON", "{}", "[]", "{\"asset\": 3}", "\"asset\"", "{\"asset\": {\"version\": \"2.0\"}",
         "{\"asset\": {\"version\": \"1.0\"}}", "{\"asset\": {\"version\": \"2.0\"}}"}) {

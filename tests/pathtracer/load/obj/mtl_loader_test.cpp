@@ -25,7 +25,7 @@ Loaded load(std::string_view text) {
 std::string error_of(std::string_view text) {
   try {
     load(text);
-  } catch (const Error& error) {
+  } catch (const tandem::Error& error) {
     return error.what();
   }
   return "no error";

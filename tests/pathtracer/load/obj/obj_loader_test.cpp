@@ -25,7 +25,7 @@ Scene load(std::string_view text, std::string_view mtl = "", const ObjOptions& o
 std::string error_of(std::string_view text, std::string_view mtl = "") {
   try {
     load(text, mtl);
-  } catch (const Error& error) {
+  } catch (const tandem::Error& error) {
     return error.what();
   }
   return "no error";
@@ -181,7 +181,7 @@ TEST_CASE("A coordinate too small for any float is 0") {
 }
 
 TEST_CASE("A file without end is refused when its first bytes are no text") {
-  CHECK_THROWS_AS(load_obj("/dev/zero"), Error);
+  CHECK_THROWS_AS(load_obj("/dev/zero"), tandem::Error);
 }
 
 TEST_CASE("A file that is cut off is an error where it shows") {
@@ -192,6 +192,6 @@ TEST_CASE("A file that is cut off is an error where it shows") {
 
 TEST_CASE("A missing file and a folder are errors") {
   const ScratchFolder folder;
-  CHECK_THROWS_AS(load_obj(folder.path() / "absent.obj"), Error);
-  CHECK_THROWS_AS(load_obj(folder.path()), Error);
+  CHECK_THROWS_AS(load_obj(folder.path() / "absent.obj"), tandem::Error);
+  CHECK_THROWS_AS(load_obj(folder.path()), tandem::Error);
 }

@@ -19,7 +19,7 @@ const std::filesystem::path scenes = std::filesystem::path(TANDEM_SOURCE_DIRECTO
 }  // namespace
 
 TANDEM_DEVICE_TEST("Ray queries and a ray tracing pipeline render the scenes that ship alike to the last bit") {
-  if (test::trace_forms(device).size() < 2) {
+  if (test::tracing_modes(device).size() < 2) {
     MESSAGE(device.info().name << " has one form only, so there is nothing to compare");
     return;
   }
@@ -29,8 +29,8 @@ TANDEM_DEVICE_TEST("Ray queries and a ray tracing pipeline render the scenes tha
     CAPTURE(file);
     const Scene scene = load_obj(scenes / file);
     const RenderSettings settings{.width = 90, .height = 70, .max_depth = 8};
-    Renderer query(test::handle(device), scene, settings, TraceForm::query);
-    Renderer pipeline(test::handle(device), scene, settings, TraceForm::pipeline);
+    Renderer query(test::handle(device), scene, settings, TracingMode::query);
+    Renderer pipeline(test::handle(device), scene, settings, TracingMode::pipeline);
     REQUIRE(query.render(4));
     REQUIRE(pipeline.render(4));
     CHECK(query.image().pixels == pipeline.image().pixels);
@@ -50,7 +50,7 @@ TANDEM_DEVICE_TEST("A device without ray queries renders through a pipeline, in 
   const RenderSettings settings{.width = 33, .height = 19, .max_depth = 5};
   const rhi::DeviceHandle limited = test::device_without_queries(device);
   Renderer renderer(limited, scene, settings);
-  CHECK(renderer.trace() == TraceForm::pipeline);
+  CHECK(renderer.trace() == TracingMode::pipeline);
   REQUIRE(renderer.render(6));
   const Image expected = test::rendered(device, scene, settings, 6);
   CHECK(renderer.image().pixels == expected.pixels);
@@ -60,5 +60,5 @@ TANDEM_DEVICE_TEST("A device without ray queries renders through a pipeline, in 
   renderer.restart(tiled);
   for (int i = 0; i < 6; ++i) REQUIRE(renderer.render(1));
   CHECK(renderer.image().pixels == expected.pixels);
-  CHECK_THROWS_AS(Renderer(limited, scene, settings, TraceForm::query), rhi::Error);
+  CHECK_THROWS_AS(Renderer(limited, scene, settings, TracingMode::query), rhi::Error);
 }

@@ -10,7 +10,7 @@
 namespace tandem::compare {
 
 /// How the scene's geometry is put into acceleration structures.
-enum class Arrangement {
+enum class InstanceSetup {
   plain,            ///< once, where it is
   instances,        ///< four times, side by side: where it is, turned, mirrored, sheared, under masks of their own
   instance_flags,   ///< likewise, but only moved; each with a flag
@@ -34,10 +34,12 @@ struct Placement {
 };
 
 /// @param scene with finite positions; its bounds decide how far apart copies are
-std::vector<Placement> placements(Arrangement arrangement, const pathtracer::Scene& scene);
+std::vector<Placement> placements(InstanceSetup instance_setup, const pathtracer::Scene& scene);
 
-/// Whether the triangles of the arrangement are transformed as they are built, and its instance is not.
-inline bool is_transformed_at_build(Arrangement arrangement) { return arrangement == Arrangement::build_transform; }
+/// Whether the triangles of the instance_setup are transformed as they are built, and its instance is not.
+inline bool is_transformed_at_build(InstanceSetup instance_setup) {
+  return instance_setup == InstanceSetup::build_transform;
+}
 
 /// What is told apart in an instance of placement `index`: numbers that are neither each other's nor any index.
 std::uint32_t custom_index(std::uint32_t placement, bool spheres);

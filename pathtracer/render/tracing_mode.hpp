@@ -8,16 +8,16 @@
 namespace tandem::pathtracer {
 
 /// How the path tracer traces its rays. The picture is the same to the last bit.
-enum class TraceForm {
+enum class TracingMode {
   query,    ///< a compute shader with ray queries
   pipeline  ///< a ray tracing pipeline
 };
 
 /// "query", "pipeline"
-std::string_view name(TraceForm form);
+std::string_view name(TracingMode form);
 
 /// The form that is wanted; by default ray queries where the device has them, else a pipeline. Throws
 /// rhi::Error(unsupported) when the device lacks what it takes.
-TraceForm choose_trace_form(const rhi::DeviceInfo& device, std::optional<TraceForm> wanted = {});
+TracingMode choose_tracing_mode(const rhi::DeviceInfo& device, std::optional<TracingMode> wanted = {});
 
 }  // namespace tandem::pathtracer

@@ -1,4 +1,4 @@
-#include "compare/probe/arrangement.hpp"
+#include "compare/probe/instance_setup.hpp"
 
 #include <cmath>
 
@@ -38,7 +38,7 @@ Transform about(const glm::dvec3& centre, const glm::dmat3& linear, const glm::d
 
 }  // namespace
 
-std::vector<Placement> placements(Arrangement arrangement, const pathtracer::Scene& scene) {
+std::vector<Placement> placements(InstanceSetup instance_setup, const pathtracer::Scene& scene) {
   const pathtracer::Bounds bounds = pathtracer::bounds(scene);
   const glm::dvec3 centre(bounds.centre());
   double radius = 0.5 * glm::length(glm::dvec3(bounds.extent()));
@@ -51,17 +51,17 @@ std::vector<Placement> placements(Arrangement arrangement, const pathtracer::Sce
   const glm::dmat3 other_turn = rotation(glm::normalize(glm::dvec3(3, -1, 1)), 1.1);
   const glm::dmat3 mirror = turn * scaling(-1, 1, 1);
 
-  if (arrangement == Arrangement::instances)
+  if (instance_setup == InstanceSetup::instances)
     return {{.mask = 0x01},
             {.transform = about(centre, turn, places[1]), .mask = 0x80},
             {.transform = about(centre, mirror, places[2]), .mask = 0x10},
             {.transform = about(centre, turn * scaling(0.6, 1.5, 1.1) * other_turn, places[3]), .mask = 0x0c}};
-  if (arrangement == Arrangement::instance_flags)
+  if (instance_setup == InstanceSetup::instance_flags)
     return {{.flags = rhi::InstanceFlags::triangle_flip_facing},
             {.transform = about(centre, unmoved, places[1]), .flags = rhi::InstanceFlags::triangle_facing_cull_disable},
             {.transform = about(centre, unmoved, places[2]), .flags = rhi::InstanceFlags::force_opaque},
             {.transform = about(centre, unmoved, places[3]), .flags = rhi::InstanceFlags::force_no_opaque}};
-  if (is_transformed_at_build(arrangement)) return {{.transform = about(centre, mirror, glm::dvec3(0.5 * radius))}};
+  if (is_transformed_at_build(instance_setup)) return {{.transform = about(centre, mirror, glm::dvec3(0.5 * radius))}};
   return {Placement{}};
 }
 

@@ -1,10 +1,10 @@
-#include "pathtracer/render/trace_form.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 
 namespace tandem::pathtracer {
 
-std::string_view name(TraceForm form) { return form == TraceForm::query ? "query" : "pipeline"; }
+std::string_view name(TracingMode form) { return form == TracingMode::query ? "query" : "pipeline"; }
 
-TraceForm choose_trace_form(const rhi::DeviceInfo& device, std::optional<TraceForm> wanted) {
+TracingMode choose_tracing_mode(const rhi::DeviceInfo& device, std::optional<TracingMode> wanted) {
   const auto unsupported = [&](const char* sentence) {
     return rhi::Error(rhi::ErrorCode::unsupported, device.name, sentence);
   };
@@ -12,9 +12,9 @@ TraceForm choose_trace_form(const rhi::DeviceInfo& device, std::optional<TraceFo
   const bool pipeline = device.capabilities.ray_tracing_pipeline;
   if (!query && !pipeline)
     throw unsupported("the path tracer needs ray queries or ray tracing pipelines, and this device has neither");
-  if (!wanted) return query ? TraceForm::query : TraceForm::pipeline;
-  if (*wanted == TraceForm::query && !query) throw unsupported("this device has no ray queries, only pipelines");
-  if (*wanted == TraceForm::pipeline && !pipeline)
+  if (!wanted) return query ? TracingMode::query : TracingMode::pipeline;
+  if (*wanted == TracingMode::query && !query) throw unsupported("this device has no ray queries, only pipelines");
+  if (*wanted == TracingMode::pipeline && !pipeline)
     throw unsupported("this device has no ray tracing pipelines, only ray queries");
   return *wanted;
 }
