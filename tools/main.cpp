@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include "base/progress.hpp"
 #include "tools/command.hpp"
 #include "tools/output/interruption.hpp"
 
@@ -65,7 +66,7 @@ int main(int argc, char** argv) {
     const int code = run(argc, argv);
     if (std::fflush(stdout) != 0) return fail("standard output cannot be written");
     return code;
-  } catch (const Interrupted& interruption) {
+  } catch (const tandem::Cancelled& interruption) {
     return fail(interruption.what(), exit_code::interrupted);
   } catch (const std::bad_alloc&) {
     return fail("there is not enough memory for this scene and image size");

@@ -10,6 +10,7 @@
 #include "compare/cause/path_classifier.hpp"
 #include "compare/image/difference.hpp"
 #include "pathtracer/render/device_scene.hpp"
+#include "pathtracer/render/path_recorder.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -107,7 +108,7 @@ class Classifier {
     for (const Candidate& each : pixels)
       for (std::uint32_t sample = 0; sample < samples_; ++sample)
         starts.push_back({.path = {.pixel = each.pixel, .sample = sample}});
-    const std::vector<PathSummary> a = devices_.a.summarize_paths(starts), b = devices_.b.summarize_paths(starts);
+    const std::vector<PathSummary> a = pathtracer::summarize_paths(devices_.a, starts), b = pathtracer::summarize_paths(devices_.b, starts);
     result_.traced_paths += starts.size();
 
     std::vector<PathId> paths;
@@ -200,7 +201,7 @@ std::uint64_t Classification::mismatches() const {
 }
 
 Classification classify(Devices devices, const Image& image_a, const Image& image_b, std::uint32_t samples,
-                        const ClassificationOptions& options, const pathtracer::Progress& progress) {
+                        const ClassificationOptions& options, const Progress& progress) {
   std::uint64_t differing_count = 0;
   const std::vector<glm::uvec2> differing = differing_pixels(image_a, image_b, options.pixel_limit, differing_count);
   const std::vector<Candidate> pixels =

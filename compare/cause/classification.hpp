@@ -9,11 +9,12 @@
 
 #include <glm/vec2.hpp>
 
+#include "base/progress.hpp"
 #include "compare/cause/difference_class.hpp"
 #include "compare/path/event_fields.hpp"
 #include "pathtracer/image/image.hpp"
 #include "pathtracer/render/path_event.hpp"
-#include "pathtracer/render/renderer.hpp"
+#include "pathtracer/render/scene_on_device.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 /// Why two devices differ: paths are recorded on both, and every event in which they part is classed.
@@ -75,19 +76,19 @@ struct Classification {
   std::uint64_t mismatches() const;     ///< paths with a mismatch, and pixels with a wrong sum
 };
 
-/// Three renderers of the same scene and settings.
+/// The same scene under the same settings on three devices.
 struct Devices {
-  pathtracer::Renderer& a;
-  pathtracer::Renderer& b;
-  pathtracer::Renderer& arbiter;   ///< traces exactly
-  const pathtracer::Scene& scene;  ///< as the renderers were given it
+  pathtracer::SceneOnDevice& a;
+  pathtracer::SceneOnDevice& b;
+  pathtracer::SceneOnDevice& arbiter;   ///< traces exactly
+  const pathtracer::Scene& scene;  ///< as the devices were given it
 };
 
 /// Classes the difference of two pictures. @param samples behind each pixel of both
 /// @param progress of the work at most; cancelling it gives what is known so far
 Classification classify(Devices devices, const pathtracer::Image& image_a, const pathtracer::Image& image_b,
                         std::uint32_t samples, const ClassificationOptions& options = {},
-                        const pathtracer::Progress& progress = {});
+                        const Progress& progress = {});
 
 /// The divergences of paths, observed fields included; one element for each path, in their order. All recordings are in
 /// memory at once: some 20 KB a path.

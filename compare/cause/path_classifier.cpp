@@ -12,6 +12,8 @@
 #include "compare/cause/perturbation.hpp"
 #include "compare/cause/segment_classifier.hpp"
 #include "compare/path/divergence.hpp"
+#include "pathtracer/render/path_recorder.hpp"
+#include "pathtracer/render/ray_tracer.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -22,7 +24,7 @@ using pathtracer::PathEvents;
 using pathtracer::PathId;
 using pathtracer::PathStart;
 using pathtracer::PathSummary;
-using pathtracer::Renderer;
+using pathtracer::SceneOnDevice;
 using pathtracer::Scene;
 namespace word = pathtracer::event_word;
 
@@ -37,7 +39,7 @@ void drop_limit(PathEvents& events) {
 }
 
 /// The segments of recordings, the way from the camera to the first among them, and what b makes of each.
-std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> paths,
+std::vector<JudgedSegment> segments_of(SceneOnDevice& b, std::span<const PathId> paths,
                                        const std::vector<PathEvents>& recordings) {
   std::vector<JudgedSegment> segments;
   std::vector<PathStart> starts;
@@ -53,7 +55,7 @@ std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> path
     for (std::size_t j = 0; j < begins.size(); ++j)
       add(begins[j], end_after(j + 1), {.path = paths[i], .state = events[begins[j]], .segment_count = 1});
   }
-  std::vector<PathEvents> recorded = b.record_paths(starts);
+  std::vector<PathEvents> recorded = pathtracer::record_paths(b, starts);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     drop_limit(recorded[i]);
     segments[i].b = std::move(recorded[i]);
@@ -67,12 +69,12 @@ std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> path
 }
 
 /// Recordings of the perturbed states of segments on a device, variation_count for each.
-std::vector<PathEvents> variations_on(Renderer& device, std::span<JudgedSegment* const> segments) {
+std::vector<PathEvents> variations_on(SceneOnDevice& device, std::span<JudgedSegment* const> segments) {
   std::vector<PathStart> starts;
   for (const JudgedSegment* segment : segments)
     for (const PathEvent& state : perturbed_states(segment->a.front()))
       starts.push_back({.path = segment->path, .state = state, .segment_count = 1});
-  std::vector<PathEvents> recorded = device.record_paths(starts);
+  std::vector<PathEvents> recorded = pathtracer::record_paths(device, starts);
   std::for_each(recorded.begin(), recorded.end(), drop_limit);
   return recorded;
 }
@@ -105,7 +107,7 @@ void judge_by_arbiter(const Devices& devices, const Scene& scene, std::span<Judg
   }
   if (disputes.empty()) return;
   const std::vector<Judgement> judgements = arbitrate(
-      disputes, scene, [&](std::span<const pathtracer::TracedRay> rays) { return devices.arbiter.answer(rays); });
+      disputes, scene, [&](std::span<const pathtracer::TracedRay> rays) { return pathtracer::trace(devices.arbiter, rays); });
   std::size_t begin = 0;
   for (std::size_t i = 0; i < segments.size(); begin = ends[i++])
     conclude(*segments[i], scene, std::span(judgements).subspan(begin, ends[i] - begin));
@@ -143,10 +145,10 @@ void find_hidden_divergences(const Devices& devices, std::span<const PathEvents>
     indices.push_back(i);
   }
   if (starts.empty()) return;
-  const std::vector<PathSummary> a = devices.a.summarize_paths(starts), b = devices.b.summarize_paths(starts);
+  const std::vector<PathSummary> a = pathtracer::summarize_paths(devices.a, starts), b = pathtracer::summarize_paths(devices.b, starts);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     if (is_same(a[i], b[i])) continue;
-    const std::vector<PathEvents> whole = devices.b.record_paths({&starts[i], 1});
+    const std::vector<PathEvents> whole = pathtracer::record_paths(devices.b, {&starts[i], 1});
     paths[indices[i]].divergences.push_back(hidden_divergence(recordings[indices[i]], whole.front()));
   }
 }
@@ -161,7 +163,7 @@ bool is_same(const PathSummary& a, const PathSummary& b) {
 std::vector<ClassifiedPath> judge_paths(const Devices& devices, const Scene& scene, std::span<const PathId> paths) {
   std::vector<PathStart> starts;
   for (const PathId& path : paths) starts.push_back({.path = path});
-  const std::vector<PathEvents> recordings = devices.a.record_paths(starts);
+  const std::vector<PathEvents> recordings = pathtracer::record_paths(devices.a, starts);
   std::vector<JudgedSegment> segments = segments_of(devices.b, paths, recordings);
 
   std::vector<JudgedSegment*> undecided, disputed;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "conformance/kit/report.hpp"
 #include "devices/devices.hpp"
 #include "tools/command.hpp"
@@ -76,7 +77,7 @@ conformance::DeviceReport run_on(const std::string& name, const std::vector<conf
   if (options.full) run_options.settings.watertightness_rays = full_watertightness_rays;
   if (options.validation) run_options.take_messages = [messages] { return messages->take(); };
   run_options.on_result = [](const conformance::Result&) {
-    if (interrupted()) throw Interrupted();
+    if (interrupted()) throw Cancelled();
   };
   return conformance::run(*device, cases, run_options);
 }

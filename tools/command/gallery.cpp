@@ -11,9 +11,11 @@
 #include "compare/image/difference.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "tools/command.hpp"
-#include "tools/comparison.hpp"
+#include "tools/options/comparison_options.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/suite/gallery.hpp"
 
@@ -43,46 +45,47 @@ std::vector<GalleryScene> chosen_scenes(const Options& options) {
   return scenes;
 }
 
-GalleryResult render_scene(const GalleryScene& scene, const Options& options, const ComparedDevices& devices) {
+GalleryResult render_scene(const GalleryScene& scene, const Options& options, const compare::ComparedDevices& devices) {
   RenderOptions render_options;
   render_options.scene = scene.file;
   render_options.size = options.size;
   render_options.settings.samples = options.samples.value_or(scene.samples);
-  ComparisonOptions comparison_options;
-  comparison_options.usual_thresholds = gallery_thresholds();
-  Comparison comparison = prepare(comparison_options, render_options, load_job(render_options), devices);
-  return {.scene = scene, .report = compare_devices(comparison)};
+  ComparisonArguments arguments;
+  arguments.comparison.thresholds = gallery_thresholds();
+  return {.scene = scene,
+          .comparison = compare_devices(devices, load_job(render_options),
+                                        comparison_options(arguments, render_options), progress_bars())};
 }
 
 int render_gallery(const Options& options) {
   const std::vector<GalleryScene> scenes = chosen_scenes(options);
   RenderOptions device_options;
   device_options.threads = options.threads;
-  ComparisonOptions comparison;
-  comparison.a = options.devices.at(0);
-  comparison.b = options.devices.at(1);
-  const ComparedDevices devices = open_devices(comparison, device_options);
+  ComparisonArguments arguments;
+  arguments.a = options.devices.at(0);
+  arguments.b = options.devices.at(1);
+  const compare::ComparedDevices devices = open_devices(arguments, device_options);
   const OutputFolder folder(options.folder);
   const OutputFolder pictures(options.folder / pictures_folder);
   std::vector<GalleryResult> results;
   for (const GalleryScene& scene : scenes) {
     GalleryResult result = render_scene(scene, options, devices);
-    DiffReport& report = result.report;
+    compare::Comparison& comparison = result.comparison;
     const auto write = [&](const std::string& name, const pathtracer::Image& image) {
       pathtracer::write_image(pictures.path() / name, reduced(image, largest_picture), {});
     };
-    write(scene.name + ".png", report.a.image);
-    write(scene.name + "_difference.png", compare::heat_map(report.a.image, report.b.image));
-    report.a.image = report.b.image = {};
-    fmt::print("{:<34}{:9.4f} % bit-equal  {}\n", scene.name, 100 * report.metrics.bit_equal,
-               compare::name(report.verdict));
-    for (const std::string& reason : report.verdict.reasons) fmt::print("{:<34}{}\n", "", reason);
+    write(scene.name + ".png", comparison.a.image);
+    write(scene.name + "_difference.png", compare::heat_map(comparison.a.image, comparison.b.image));
+    comparison.a.image = comparison.b.image = {};
+    fmt::print("{:<34}{:9.4f} % bit-equal  {}\n", scene.name, 100 * comparison.metrics.bit_equal,
+               compare::name(comparison.verdict));
+    for (const std::string& reason : comparison.verdict.reasons) fmt::print("{:<34}{}\n", "", reason);
     std::fflush(stdout);
     results.push_back(std::move(result));
   }
   write_text(folder.path() / "gallery.md", gallery_markdown(results, pictures_folder));
   write_text(folder.path() / "gallery.json", json_text(to_json(results)));
-  const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.report.verdict.agree; });
+  const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.comparison.verdict.agree; });
   return agree ? exit_code::success : exit_code::differ;
 }
 

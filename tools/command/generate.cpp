@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/progress.hpp"
 #include "pathtracer/load/generate.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
@@ -27,7 +28,7 @@ int generate(const Options& options) {
       return !interrupted();
     });
   }
-  if (triangles == 0) throw Interrupted();
+  if (triangles == 0) throw Cancelled();
   fmt::print("{}: {} triangles\n", options.output.string(), triangles);
   return exit_code::success;
 }

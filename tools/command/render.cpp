@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "compare/session/rendering.hpp"
 #include "pathtracer/image/image_io.hpp"
+#include "pathtracer/render/first_hits.hpp"
 #include "tools/command.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/render_options.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
-#include "tools/rendering.hpp"
+#include "tools/output/progress_bar.hpp"
+#include "tools/report/speed.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -28,13 +32,13 @@ int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
   if (options.layers && options.output.extension() != ".exr")
     throw Error(fmt::format("--layers: '{}' is no .exr, which alone has layers", options.output.string()));
-  const RenderJob job = load_job(options.render);
+  const compare::Job job = load_job(options.render);
   const rhi::DeviceHandle device = open_device(options.device, options.render);
   pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
-  const Rendering rendering = render(renderer, device->info(), job.samples);
+  const compare::Rendering rendering = compare::render(renderer, job.samples, progress_bars());
   print_warnings(rendering.warnings);
   std::vector<pathtracer::ImageChannel> layers;
-  if (options.layers) layers = renderer.first_hits(job.samples);
+  if (options.layers) layers = pathtracer::first_hits(renderer.scene(), job.samples);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {
                           pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone, layers);
                         }};

@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "compare/study/sampling_study.hpp"
 #include "compare/study/study_scenes.hpp"
 #include "tools/command.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/progress_bar.hpp"
-#include "tools/rendering.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/study_report.hpp"
 
@@ -41,13 +42,10 @@ int study_sampling(const Options& options) {
   };
   for (const Subject& subject : {Subject{study::weekend_box(), true}, Subject{study::veach_plates(), false},
                                  Subject{study::light_over_floor(), false}}) {
-    ProgressBar bar(subject.scene.name);
-    std::optional<study::SceneResult> result = study::study_scene(
-        device, subject.scene, study::methods(), options.settings, subject.compares_thesis, [&](double fraction) {
-          bar.show(fraction);
-          return !interrupted();
-        });
-    if (!result) throw Interrupted();
+    std::optional<study::SceneResult> result =
+        study::study_scene(device, subject.scene, study::methods(), options.settings, subject.compares_thesis,
+                           progress_bar(subject.scene.name));
+    if (!result) throw Cancelled();
     report.scenes.push_back(std::move(*result));
   }
   fmt::print("{}", markdown(report));

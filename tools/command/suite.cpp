@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
@@ -59,12 +60,11 @@ int run_suite(const Options& options) {
   SuiteRun run(options.folder, options.fresh);
   for (const SuiteCell& cell : suite.cells) {
     try {
-      if (interrupted()) throw Interrupted();
+      if (interrupted()) throw Cancelled();
       results.push_back(run.run(cell));
-    } catch (const Interrupted&) {
-      throw Interrupted(
-          fmt::format("interrupted; {} of {} comparisons are done, and the same command goes on from there",
-                      results.size(), suite.cells.size()));
+    } catch (const Cancelled&) {
+      throw Cancelled(fmt::format("interrupted; {} of {} comparisons are done, and the same command goes on from there",
+                                  results.size(), suite.cells.size()));
     }
     print_line(results.back());
   }

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <iterator>
 
-#include "tools/rendering.hpp"
 #include "tools/report/device_json.hpp"
+#include "tools/report/job_report.hpp"
+#include "tools/report/speed.hpp"
 #include "tools/report/spread.hpp"
 
 namespace tandem::tools {
 namespace {
 
-double camera_paths(const JobSummary& job) {
+double camera_paths(const compare::JobSummary& job) {
   return static_cast<double>(job.settings.width) * job.settings.height * job.samples;
 }
 

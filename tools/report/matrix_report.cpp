@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tools/report/device_json.hpp"
+#include "tools/report/job_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -44,8 +45,8 @@ bool MatrixReport::agree() const {
   return std::ranges::all_of(pairs, [](const MatrixPair& pair) { return pair.verdict.agree; });
 }
 
-MatrixReport compare_all(const JobSummary& job, const compare::Thresholds& thresholds,
-                         std::vector<Rendering> renderings) {
+MatrixReport compare_all(const compare::JobSummary& job, const compare::Thresholds& thresholds,
+                         std::vector<compare::Rendering> renderings) {
   MatrixReport report{.job = job,
                       .thresholds = thresholds,
                       .renderings = std::move(renderings),
@@ -63,7 +64,7 @@ MatrixReport compare_all(const JobSummary& job, const compare::Thresholds& thres
       report.pairs.push_back(std::move(pair));
     }
   std::vector<pathtracer::Image> images;
-  for (const Rendering& rendering : report.renderings) images.push_back(rendering.image);
+  for (const compare::Rendering& rendering : report.renderings) images.push_back(rendering.image);
   report.vote = compare::vote(images);
   report.outvoted = compare::outvoted_devices(agree);
   return report;
@@ -92,7 +93,7 @@ std::string table(const MatrixReport& report) {
   line("settings", settings_text(report.job));
   text += '\n';
   std::string header;
-  for (const Rendering& rendering : report.renderings) header += fmt::format("{:>20}", rendering.device.name);
+  for (const compare::Rendering& rendering : report.renderings) header += fmt::format("{:>20}", rendering.device.name);
   line("bit-equal", header);
   for (std::size_t row = 0; row < report.renderings.size(); ++row) {
     std::string cells;
@@ -131,14 +132,14 @@ std::string table(const MatrixReport& report) {
 
 nlohmann::ordered_json to_json(const MatrixReport& report) {
   using Json = nlohmann::ordered_json;
-  const Rendering& first = report.renderings.front();
+  const compare::Rendering& first = report.renderings.front();
   Json json = {{"verdict", report.agree() ? "agree" : "differ"},
                {"reasons", reasons(report)},
                {"outvoted", device_names(report, report.outvoted)},
                {"devices", Json::array()},
                {"pairs", Json::array()}};
   for (std::size_t index = 0; index < report.renderings.size(); ++index) {
-    const Rendering& rendering = report.renderings[index];
+    const compare::Rendering& rendering = report.renderings[index];
     const compare::DeviceVotes& votes = report.vote.devices[index];
     Json device = to_json(rendering.device);
     device["trace"] = pathtracer::name(rendering.trace);

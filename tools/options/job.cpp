@@ -1,4 +1,4 @@
-#include "tools/rendering.hpp"
+#include "tools/options/job.hpp"
 
 #include <cmath>
 #include <optional>
@@ -9,9 +9,7 @@
 
 #include "devices/devices.hpp"
 #include "pathtracer/load/scene_loader.hpp"
-#include "tools/output/interruption.hpp"
 #include "tools/output/messages.hpp"
-#include "tools/output/progress_bar.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -52,8 +50,9 @@ std::optional<pathtracer::Camera> camera_of(const RenderOptions& options, const 
 
 }  // namespace
 
-RenderJob load_job(const RenderOptions& options) {
-  RenderJob job;
+compare::Job load_job(const RenderOptions& options) {
+  compare::Job job;
+  job.file = options.scene;
   job.scene = pathtracer::load_scene(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
   print_warnings(job.scene.warnings);
   pathtracer::SceneSettings wanted = options.settings;
@@ -77,33 +76,6 @@ rhi::DeviceHandle open_device(const std::string& name, const RenderOptions& opti
   desc.thread_count = options.threads;
   desc.on_message = print_message;
   return create_device(desc);
-}
-
-void render_samples(pathtracer::Renderer& renderer, std::uint32_t samples, const std::string& label) {
-  ProgressBar bar(label);
-  const bool finished = renderer.render(samples, [&](double fraction) {
-    bar.show(fraction);
-    return !interrupted();
-  });
-  if (!finished || interrupted()) throw Interrupted();
-}
-
-Rendering render(pathtracer::Renderer& renderer, const rhi::DeviceInfo& device, std::uint32_t samples) {
-  render_samples(renderer, samples, device.name);
-  return {.image = renderer.image(),
-          .device = device,
-          .trace = renderer.trace(),
-          .camera = renderer.camera(),
-          .background = renderer.background(),
-          .milliseconds = renderer.device_milliseconds(),
-          .build_milliseconds = renderer.build_milliseconds(),
-          .rays = renderer.ray_count(),
-          .metadata = renderer.metadata(),
-          .warnings = renderer.warnings()};
-}
-
-double per_second_in_millions(double count, double milliseconds) {
-  return milliseconds > 0.0 ? count / milliseconds / 1000.0 : 0.0;
 }
 
 }  // namespace tandem::tools

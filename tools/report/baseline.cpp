@@ -1,12 +1,13 @@
-#include "tools/baseline.hpp"
+#include "tools/report/baseline.hpp"
 
 #include <fmt/format.h>
 
 #include "base/error.hpp"
 #include "base/text_file.hpp"
 #include "pathtracer/image/image_io.hpp"
+#include "tools/report/comparison_report.hpp"
 #include "tools/report/device_json.hpp"
-#include "tools/report/diff_report.hpp"
+#include "tools/report/job_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -25,7 +26,7 @@ Json without_names(Json settings) {
 
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
-BaselineSide compare_side(const pathtracer::Image& before, const Json& milliseconds, const Rendering& now,
+BaselineSide compare_side(const pathtracer::Image& before, const Json& milliseconds, const compare::Rendering& now,
                           const compare::Thresholds& thresholds) {
   BaselineSide side;
   side.metrics = compare::measure(before, now.image);
@@ -55,7 +56,7 @@ StoredRun read_stored_run(const std::filesystem::path& folder) {
   return run;
 }
 
-void check_same_job(const StoredRun& run, const JobSummary& job, const pathtracer::Camera& camera,
+void check_same_job(const StoredRun& run, const compare::JobSummary& job, const pathtracer::Camera& camera,
                     const glm::vec3& background) {
   // Through text, so that both have numbers as a file has them.
   const Json now = without_names(Json::parse(settings_json(job, camera, background).dump()));
@@ -75,12 +76,12 @@ void check_same_job(const StoredRun& run, const JobSummary& job, const pathtrace
       fail(fmt::format("its images are not of {}x{} pixels", job.settings.width, job.settings.height));
 }
 
-Baseline compare_with(const StoredRun& run, const DiffReport& report) {
+Baseline compare_with(const StoredRun& run, const compare::Comparison& comparison) {
   Baseline baseline{.folder = run.folder.string(),
-                    .a = compare_side(run.a, run.report.at("ms_a"), report.a, report.thresholds),
-                    .b = compare_side(run.b, run.report.at("ms_b"), report.b, report.thresholds),
+                    .a = compare_side(run.a, run.report.at("ms_a"), comparison.a, comparison.thresholds),
+                    .b = compare_side(run.b, run.report.at("ms_b"), comparison.b, comparison.thresholds),
                     .changes = {}};
-  const Json now = Json::parse(json_text(to_json(report)));
+  const Json now = Json::parse(json_text(to_json(comparison)));
   const auto note = [&](const std::string& what, const Json& before_value, const Json& now_value) {
     if (before_value != now_value) baseline.changes.push_back({what, text(before_value), text(now_value)});
   };

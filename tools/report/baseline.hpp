@@ -8,10 +8,10 @@
 #include <glm/vec3.hpp>
 
 #include "compare/metrics/metrics.hpp"
+#include "compare/session/comparison.hpp"
 #include "compare/verdict/verdict.hpp"
 #include "pathtracer/image/image.hpp"
 #include "pathtracer/scene/camera.hpp"
-#include "tools/report/job_report.hpp"
 
 /// A comparison of today with one that `tandem diff --out` stored.
 namespace tandem::tools {
@@ -32,7 +32,7 @@ StoredRun read_stored_run(const std::filesystem::path& folder);
 /// Throws Error unless the run shows the same content of a scene under the same settings, in a tier that
 /// compares the same samples.
 /// @param camera,background those in use
-void check_same_job(const StoredRun& run, const JobSummary& job, const pathtracer::Camera& camera,
+void check_same_job(const StoredRun& run, const compare::JobSummary& job, const pathtracer::Camera& camera,
                     const glm::vec3& background);
 
 /// A picture of today against the stored one, which is image a of the metrics.
@@ -58,9 +58,7 @@ struct Baseline {
   bool agree() const { return a.verdict.agree && b.verdict.agree; }
 };
 
-struct DiffReport;
-
 /// Compares what was rendered today with the stored run, which must be one of the same job.
-Baseline compare_with(const StoredRun& run, const DiffReport& report);
+Baseline compare_with(const StoredRun& run, const compare::Comparison& comparison);
 
 }  // namespace tandem::tools

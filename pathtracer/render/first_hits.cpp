@@ -1,11 +1,9 @@
+#include "pathtracer/render/first_hits.hpp"
+
 #include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <span>
-
-#include "pathtracer/render/renderer.hpp"
-
-// What pixels show first: layers beside the picture.
 
 namespace tandem::pathtracer {
 namespace {
@@ -39,18 +37,19 @@ ImageChannel integer_channel(const char* name, const std::vector<GpuFirstHit>& h
 
 }  // namespace
 
-std::vector<ImageChannel> Renderer::first_hits(std::uint32_t samples) {
-  const std::size_t pixels = std::size_t{settings_.width} * settings_.height;
-  const rhi::BufferHandle buffer = device_->create_buffer(
+std::vector<ImageChannel> first_hits(SceneOnDevice& scene, std::uint32_t samples) {
+  const RenderSettings& settings = scene.settings();
+  const std::size_t pixels = std::size_t{settings.width} * settings.height;
+  const rhi::BufferHandle buffer = scene.device().create_buffer(
       {.size = pixels * sizeof(GpuFirstHit), .usage = rhi::BufferUsage::storage, .label = "first hits"});
   std::vector<DispatchConstants> dispatches;
   for (std::uint32_t first = 0; first < samples; first += batch)
-    dispatches.push_back({.tile_size = {settings_.width, settings_.height},
+    dispatches.push_back({.tile_size = {settings.width, settings.height},
                           .first_sample = first,
                           .sample_count = std::min(batch, samples - first)});
-  run_task(PathTraceTask::first_hit, {buffer}, dispatches);
+  scene.run(PathTraceTask::first_hit, {&buffer, 1}, dispatches);
   std::vector<GpuFirstHit> hits(pixels);
-  device_->download(buffer, 0, std::as_writable_bytes(std::span(hits)));
+  scene.device().download(buffer, 0, std::as_writable_bytes(std::span(hits)));
   for (GpuFirstHit& hit : hits) {
     hit.albedo /= static_cast<float>(samples);
     if (hit.count == 0) continue;
