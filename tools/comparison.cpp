@@ -122,7 +122,7 @@ DiffReport compare_devices(Comparison& comparison) {
     report.classification = classify(comparison, report);
     evidence.mismatches = report.classification->mismatches();
   }
-  report.verdict = compare::judge(evidence, report.thresholds);
+  report.verdict = compare::make_verdict(evidence, report.thresholds);
   return report;
 }
 

@@ -1,5 +1,5 @@
 // Whether correct devices are ever called wrong: every scene of a list, on two devices, under many seeds. Each picture
-// is measured, classified and judged as `tandem diff --classify` does, and must be accepted.
+// is measured, classified and held to its thresholds as `tandem diff --classify` does, and must be accepted.
 
 #include <fmt/format.h>
 
@@ -124,7 +124,7 @@ Tally examine(const std::filesystem::path& path, const Options& options, const D
     b.render(options.samples);
     const pathtracer::Image image_a = a.image(), image_b = b.image();
     const compare::Classification found = compare::classify({a, b, arbiter, scene}, image_a, image_b, options.samples);
-    const compare::Verdict verdict = compare::judge(
+    const compare::Verdict verdict = compare::make_verdict(
         {.metrics = compare::measure(image_a, image_b), .mismatches = found.mismatches(), .bias = {}}, thresholds);
     Tally one{.pixels = image_a.pixels.size(),
               .differing = found.differing_pixels,

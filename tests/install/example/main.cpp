@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     // The result of the CPU device does not depend on the number of threads, so every bit must be the same.
     compare::Thresholds thresholds;
     thresholds.tier = compare::Tier::exact;
-    const compare::Verdict verdict = compare::judge({.metrics = metrics}, thresholds);
+    const compare::Verdict verdict = compare::make_verdict({.metrics = metrics}, thresholds);
     std::printf("mean radiance %g, %g of the pixels bit-equal: %s\n", metrics.mean_a, metrics.bit_equal,
                 compare::name(verdict));
     return verdict.agree && metrics.mean_a > 0.0 ? 0 : 1;
