@@ -27,7 +27,7 @@ std::string roulette_text(const Divergence& divergence) {
   const bool survives = divergence.a.words[word::roulette_survives] != 0;
   return fmt::format("roulette {} on a and {} on b: the number {:.9g} lies within rounding of the threshold {:.9g}.",
                      survives ? "goes on" : "ends the path", survives ? "ends the path" : "goes on",
-                     static_cast<double>(divergence.a.words[word::roulette_bits] >> 8u) * 0x1p-24,
+                     double{unit_interval(divergence.a.words[word::roulette_bits])},
                      divergence.a.number(word::roulette_survival));
 }
 

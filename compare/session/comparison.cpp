@@ -81,7 +81,7 @@ Comparison compare_devices(Session& session, const StageProgress& progress) {
     if (cancelled) throw Cancelled();
     evidence.mismatches = result.classification->mismatches();
   }
-  result.verdict = judge(evidence, result.thresholds);
+  result.verdict = make_verdict(evidence, result.thresholds);
   return result;
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <stdexcept>
 #include <utility>
 
@@ -19,14 +17,6 @@ using pathtracer::PathSummary;
 
 /// Of a pixel with many samples, as many paths are classified at most: each costs some recordings.
 constexpr std::size_t classified_at_most = 64;
-
-bool is_same(const PathSummary& a, const PathSummary& b) {
-  // By bits: a NaN is equal to itself, and the zeros are two. What is reserved holds anything.
-  using Words = std::array<std::uint32_t, 3>;
-  static_assert(sizeof(Words) == sizeof(a.radiance));
-  return std::bit_cast<Words>(a.radiance) == std::bit_cast<Words>(b.radiance) && a.ray_count == b.ray_count &&
-         a.event_count == b.event_count && a.digest == b.digest;
-}
 
 bool has_mismatch(const ExplainedSample& sample) {
   return sample.classified && sample.classified->worst() == DifferenceClass::mismatch;
@@ -53,7 +43,7 @@ std::vector<ExplainedSample> compare_samples(const ExplanationOptions& options, 
   }
   const std::vector<PathSummary> of_a = pathtracer::summarize_paths(a, starts),
                                  of_b = pathtracer::summarize_paths(b, starts);
-  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].differs = !is_same(of_a[i], of_b[i]);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i].differs = of_a[i] != of_b[i];
   return samples;
 }
 

@@ -10,9 +10,9 @@ namespace tandem::compare {
 namespace {
 
 /// Collects the sentences of the rules that do not hold.
-class Judge {
+class RuleCheck {
  public:
-  explicit Judge(const Thresholds& thresholds) : thresholds_(thresholds) {}
+  explicit RuleCheck(const Thresholds& thresholds) : thresholds_(thresholds) {}
 
   std::vector<std::string> reasons() && { return std::move(reasons_); }
 
@@ -85,21 +85,21 @@ class Judge {
 
 }  // namespace
 
-Verdict judge(const Evidence& evidence, const Thresholds& thresholds) {
-  Judge judge(thresholds);
-  judge.check_counts(evidence);
+Verdict make_verdict(const Evidence& evidence, const Thresholds& thresholds) {
+  RuleCheck rules(thresholds);
+  rules.check_counts(evidence);
   switch (thresholds.tier) {
     case Tier::exact:
-      judge.check_exact(evidence.metrics);
+      rules.check_exact(evidence.metrics);
       break;
     case Tier::tolerance:
-      judge.check_tolerance(evidence.metrics);
+      rules.check_tolerance(evidence.metrics);
       break;
     case Tier::statistical:
-      judge.check_bias(evidence.bias);
+      rules.check_bias(evidence.bias);
       break;
   }
-  Verdict verdict{.tier = thresholds.tier, .agree = false, .reasons = std::move(judge).reasons()};
+  Verdict verdict{.tier = thresholds.tier, .agree = false, .reasons = std::move(rules).reasons()};
   verdict.agree = verdict.reasons.empty();
   return verdict;
 }

@@ -31,7 +31,7 @@ struct Verdict {
 };
 
 /// Holds the evidence to the rules of the tier. Throws std::invalid_argument for tier statistical without a test.
-Verdict judge(const Evidence& evidence, const Thresholds& thresholds = {});
+Verdict make_verdict(const Evidence& evidence, const Thresholds& thresholds = {});
 
 /// "agree" or "differ".
 const char* name(const Verdict& verdict);

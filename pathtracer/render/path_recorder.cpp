@@ -62,7 +62,7 @@ std::vector<PathSummary> record(SceneOnDevice& scene, std::span<const PathStart>
   const rhi::BufferHandle summaries = output(starts.size(), sizeof(PathSummary), "path summaries");
   const DispatchConstants constants{.tile_size = {starts.size(), 1}};
   scene.run(PathTraceTask::log,
-            std::array{log, rhi::create_filled(device, std::span(gpu_starts), rhi::BufferUsage::storage, "path starts"),
+            std::array{log, rhi::create_filled(device, gpu_starts, rhi::BufferUsage::storage, "path starts"),
                        summaries},
             {&constants, 1});
   events = event_count == 0 ? PathEvents{} : rhi::read<PathEvent>(device, log, event_count);

@@ -30,7 +30,7 @@ BaselineSide compare_side(const pathtracer::Image& before, const Json& milliseco
                           const compare::Thresholds& thresholds) {
   BaselineSide side;
   side.metrics = compare::measure(before, now.image);
-  side.verdict = compare::judge({.metrics = side.metrics}, thresholds);
+  side.verdict = compare::make_verdict({.metrics = side.metrics}, thresholds);
   side.milliseconds_before = milliseconds;
   side.milliseconds_now = now.milliseconds;
   return side;

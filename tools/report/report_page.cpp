@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "compare/cause/path_classifier.hpp"
 #include "compare/path/alignment.hpp"
 #include "compare/path/scene_names.hpp"
 #include "compare/report/page.hpp"
@@ -47,7 +46,7 @@ std::vector<PathStart> starts_of(compare::Session& session, const compare::Class
         samples.push_back({.path = {.pixel = ranked.pixel, .sample = sample}});
       const auto of_a = summarize_paths(session.a.scene(), samples), of_b = summarize_paths(session.b.scene(), samples);
       for (std::size_t i = samples.size(); i-- > 0;)
-        if (!compare::is_same(of_a[i], of_b[i])) path = samples[i].path;
+        if (of_a[i] != of_b[i]) path = samples[i].path;
     }
     result.push_back({.path = path});
   }

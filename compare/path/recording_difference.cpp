@@ -1,4 +1,4 @@
-#include "compare/path/divergence.hpp"
+#include "compare/path/recording_difference.hpp"
 
 #include <algorithm>
 
@@ -26,7 +26,7 @@ const EventField* field_at(std::span<const PathEvent> a, std::span<const PathEve
   return place.field < fields.size() ? &fields[place.field] : nullptr;
 }
 
-std::optional<EventPlace> first_divergence(std::span<const PathEvent> a, std::span<const PathEvent> b) {
+std::optional<EventPlace> first_significant_difference(std::span<const PathEvent> a, std::span<const PathEvent> b) {
   std::optional<EventPlace> place = next_difference(a, b);
   while (place) {
     const EventField* const field = field_at(a, b, *place);

@@ -27,8 +27,8 @@ const EventField* field_at(std::span<const pathtracer::PathEvent> a, std::span<c
                            EventPlace place);
 
 /// As next_difference from the beginning, but without observed fields, on which no path's course depends.
-std::optional<EventPlace> first_divergence(std::span<const pathtracer::PathEvent> a,
-                                           std::span<const pathtracer::PathEvent> b);
+std::optional<EventPlace> first_significant_difference(std::span<const pathtracer::PathEvent> a,
+                                                       std::span<const pathtracer::PathEvent> b);
 
 /// Where the segments of a recording begin: the indices of its events of kind segment.
 std::vector<std::size_t> segment_begins(std::span<const pathtracer::PathEvent> events);
