@@ -9,7 +9,7 @@
 #include "rhi/device.hpp"
 #include "tools/options/render_options.hpp"
 
-/// From the options of a command to pictures: what render, diff and bench share.
+/// From the options of a command to an image, for every command that renders.
 namespace tandem::tools {
 
 /// What is to be rendered, and how.

@@ -86,7 +86,7 @@ Needed judge(JudgedSegment& segment, const pathtracer::Scene& scene, const Varia
       add(segment, DifferenceClass::flipped_decision);
       return Needed::nothing;
     }
-    // What no state decides, and what b has not written down, rounding cannot excuse.
+    // Rounding cannot explain what depends on no state, nor what b has not recorded.
     if (!has_state(segment) || found->event == 0 || found->event >= segment.b.size() ||
         (field && field->type == FieldType::bits)) {
       add(segment, DifferenceClass::mismatch);

@@ -51,7 +51,7 @@ bool lets_through(const Scene& scene, std::uint32_t answer) {
   return answer < scene.triangles.size() && pathtracer::is_transparent(scene, scene.triangles[answer]);
 }
 
-/// The point of the segment that is nearest to the ray's line, by its distance from there.
+/// The distance between the ray's line and the segment.
 double distance_to_segment(const TracedRay& ray, const glm::dvec3& from, const glm::dvec3& to) {
   const glm::dvec3 origin(ray.origin), along = glm::normalize(glm::dvec3(ray.direction));
   const auto aside = [&](const glm::dvec3& p) {

@@ -34,7 +34,7 @@ class Renderer {
   /// Uploads the scene and builds its acceleration structures. Throws Error for bad settings, rhi::Error for what the
   /// device refuses (a form of tracing that it lacks, a scene or picture that is too large).
   /// @param trace as choose_tracing_mode takes it
-  /// @param programs of the same device, to share with other renderers; absent: an own one
+  /// @param programs of the same device, to share with other renderers; absent: the renderer creates its own
   Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSettings& settings,
            std::optional<TracingMode> trace = {}, ProgramStoreHandle programs = {});
 
