@@ -53,12 +53,11 @@ compare::BatchedEstimate render_batches(pathtracer::Renderer& renderer, const rh
 void add_batch_options(CLI::App& command, BatchOptions& options) {
   CLI::App& group = *command.add_option_group("Tier statistical");
   add_whole_number(group, "--batches", options.batches, fewest_batches, 1U << 16,
-                   "Batches into which the samples are divided, each under a seed of its own, from which the noise is "
-                   "known [as many as samples, from 8 to 32]");
-  add_whole_number(group, "--tile", options.tile, smallest_tile, 1U << 16,
-                   "Side in pixels of the tiles that are tested");
+                   "Number of batches, each with its own seed, into which the samples are divided to measure the noise "
+                   "[one per sample, from 8 to 32]");
+  add_whole_number(group, "--tile", options.tile, smallest_tile, 1U << 16, "Side of the tested tiles in pixels");
   add_whole_number(group, "--seed-b", options.seed_b, 0, UINT32_MAX,
-                   "Seed of the first batch of the second device [one that the first does not use]");
+                   "Seed of the second device's first batch [one that the first device does not use]");
 }
 
 Statistics compare_batches(pathtracer::Renderer& a, const rhi::DeviceInfo& device_a, pathtracer::Renderer& b,

@@ -13,21 +13,23 @@ void add_comparison_options(CLI::App& command, ComparisonOptions& options) {
   add_tracing_mode(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
   add_tracing_mode(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
   add_named(command, "--metrics", options.metrics, compare::metric_set_names(),
-            "all: FLIP and a table of regions too, which takes some seconds [basic]");
+            "all: also FLIP and a table of regions, which take some seconds [basic]");
   command.add_flag("--classify", options.classify,
-                   "Say why pixels differ: rounding, a tie, a decision that rounding turned, or a mismatch");
+                   "Classify why pixels differ: rounding, a tie, a decision flipped by rounding, or a mismatch");
   add_whole_number(command, "--classify-pixels", options.classification.pixel_limit, 1, std::uint64_t{1} << 24,
-                   "Pixels to classify at most, spread evenly over those that differ");
-  add_whole_number(command, "--survey", options.classification.survey_pixels, 0, std::uint64_t{1} << 24,
-                   "Pixels all over the picture whose paths are compared whether they differ or not");
-  command.add_option("--arbiter", options.arbiter, "The device that says which answer to a ray is right")
+                   "Maximum number of pixels to classify, spread evenly over those that differ");
+  add_whole_number(
+      command, "--survey", options.classification.survey_pixels, 0, std::uint64_t{1} << 24,
+      "Number of further pixels, spread over the whole image, whose paths are compared even if the pixels agree");
+  command.add_option("--arbiter", options.arbiter, "Device that decides which of two ray hits is right")
       ->type_name("D3")
       ->capture_default_str();
-  command.add_flag("--probe", options.probe,
-                   "Ask the scene's geometry in ways that the path tracer does not use, too: under masks, culling, "
-                   "other ranges of t, moved and mirrored, updated, ...");
+  command.add_flag(
+      "--probe", options.probe,
+      "Also trace recorded rays with features of acceleration structures and rays that the path tracer does not "
+      "use: masks, culling, ranges of t, transformed and mirrored instances, updates, ...");
   add_whole_number(command, "--probe-rays", options.probe_rays, 1, std::uint64_t{1} << 19,
-                   "Rays to probe with at most, of paths all over the picture");
+                   "Maximum number of rays to probe with, from paths spread over the whole image");
   add_threshold_options(command, options.thresholds);
   add_batch_options(command, options.batches);
 }
@@ -36,7 +38,7 @@ compare::Thresholds thresholds_for(const ComparisonOptions& options, const Rende
   compare::Thresholds thresholds = compare::thresholds_of(render_options.scene, options.usual_thresholds);
   apply(options.thresholds, thresholds);
   if (thresholds.tier == compare::Tier::statistical && options.classify)
-    throw Error("--classify means nothing in tier statistical, where every path of a and b is another");
+    throw Error("--classify cannot be combined with --tier statistical: a and b have no paths in common");
   return thresholds;
 }
 

@@ -36,11 +36,11 @@ bool has_mismatch(const ExplainedSample& sample) {
 
 void check(const ExplanationOptions& options, const RenderJob& job) {
   if (options.pixel.x >= job.settings.width || options.pixel.y >= job.settings.height) {
-    throw Error(fmt::format("--pixel {},{} is outside the picture, which has {}x{} pixels", options.pixel.x,
-                            options.pixel.y, job.settings.width, job.settings.height));
+    throw Error(fmt::format("--pixel {},{} is outside the image of {}x{} pixels", options.pixel.x, options.pixel.y,
+                            job.settings.width, job.settings.height));
   }
   if (options.sample && *options.sample >= job.samples) {
-    throw Error(fmt::format("--sample {} is not there: the pixel has samples 0 to {} (--spp {})", *options.sample,
+    throw Error(fmt::format("--sample {} does not exist: the pixel has samples 0 to {} (--spp {})", *options.sample,
                             job.samples - 1, job.samples));
   }
 }

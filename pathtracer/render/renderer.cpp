@@ -99,7 +99,7 @@ void Renderer::restart(const RenderSettings& settings) {
   if (settings.background) background_ = *settings.background;
   if (scene_.light_count() == 0 && !scene_.environment() && !settings.background) {
     background_ = glm::vec3(1);
-    warnings_.push_back(fmt::format("{}: nothing emits light, so a white background of radiance 1 does", scene_name_));
+    warnings_.push_back(fmt::format("{}: no emitters, so the background is white with radiance 1", scene_name_));
   }
   constants_.background = background_;
   scene_.describe(constants_);

@@ -170,7 +170,7 @@ TEST_CASE("roulette whose number lies between two roundings of its threshold is 
   REQUIRE(judged.divergences.size() == 2);
   CHECK(judged.divergences[0].difference_class == DifferenceClass::rounding);
   CHECK(judged.divergences[1].difference_class == DifferenceClass::flipped_decision);
-  CHECK(says(judged.divergences[1], "roulette goes on on a and ends the path on b") == true);
+  CHECK(says(judged.divergences[1], "roulette continues the path on a and ends it on b") == true);
   // One that does not do what its own numbers say is wrong, unless rounding explains even that.
   const PathEvents wrong = {state, roulette_event(below, threshold, false)};
   judged = segment(a, wrong);
