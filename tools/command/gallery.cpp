@@ -108,7 +108,7 @@ void add_gallery_command(CLI::App& app, Action& action) {
   command->footer(
       "Exit code: 0 every scene agrees, 1 one differs beyond its thresholds, 2 error.\n"
       "Examples:\n"
-      "  tandem gallery --out docs\n"
+      "  tandem gallery --out docs/results\n"
       "  tandem gallery --device cpu vulkan:1 --size 256x256 --only veach_mis --out gallery");
   command->callback([&action, options] { action = [options] { return render_gallery(*options); }; });
 }
