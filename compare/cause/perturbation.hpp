@@ -12,8 +12,8 @@
 /// units in the last place.
 namespace tandem::compare {
 
-/// So many states are tried. A decision that rounding turns lies on one side for about half of them; that all miss it
-/// while it is nearer to its threshold than they reach has a probability of about 2^-64.
+/// The number of perturbed states that are tried. About half of them flip a decision that lies within their reach of
+/// its threshold, so the probability that none does is about 2^-64.
 inline constexpr std::size_t variation_count = 64;
 
 /// Events of kind segment with the state of `state`, moved by up to tolerated_ulp units in the last place

@@ -83,7 +83,7 @@ Pending classify_segment(ClassifiedSegment& segment, const pathtracer::Scene& sc
       add(segment, DifferenceClass::flipped_decision);
       return Pending::nothing;
     }
-    // What no state decides, and what b has not recorded, rounding cannot excuse.
+    // Rounding cannot explain what depends on no state, nor what b has not recorded.
     if (!has_state(segment) || found->event == 0 || found->event >= segment.b.size() ||
         (field && field->type == FieldType::bits)) {
       add(segment, DifferenceClass::mismatch);

@@ -24,8 +24,8 @@ bool has_mismatch(const ExplainedSample& sample) {
 
 void check(const ExplanationOptions& options, const Job& job) {
   if (options.pixel.x >= job.settings.width || options.pixel.y >= job.settings.height) {
-    throw Error(fmt::format("pixel {},{} is outside the picture, which has {}x{} pixels", options.pixel.x,
-                            options.pixel.y, job.settings.width, job.settings.height));
+    throw Error(fmt::format("pixel {},{} is outside the image of {}x{} pixels", options.pixel.x, options.pixel.y,
+                            job.settings.width, job.settings.height));
   }
   if (options.sample && *options.sample >= job.samples) {
     throw Error(fmt::format("the pixel has no sample {}: its samples are 0 to {}", *options.sample, job.samples - 1));

@@ -25,9 +25,9 @@ class RuleCheck {
 
   void check_exact(const Metrics& metrics) {
     const double different = std::round((1.0 - metrics.bit_equal) * static_cast<double>(metrics.pixels));
-    require(
-        metrics.bit_equal == 1.0,
-        fmt::format("{:.0f} of {} pixels do not have the same bits; tier exact wants all.", different, metrics.pixels));
+    require(metrics.bit_equal == 1.0,
+            fmt::format("{:.0f} of {} pixels do not have the same bits; tier exact requires all to.", different,
+                        metrics.pixels));
   }
 
   void check_tolerance(const Metrics& metrics) {
@@ -46,15 +46,12 @@ class RuleCheck {
     if (findings.empty()) throw std::invalid_argument("a statistical verdict needs a test");
     const double least = thresholds_.limit(RuleMetric::bias_p_value);
     for (const BiasFinding& finding : findings)
-      require(finding.p_value >= least, fmt::format("{}: chance alone would do that with probability {:.2g}, and {:g} "
-                                                    "is the least that passes for chance.",
-                                                    finding.sentence, finding.p_value, least));
+      require(finding.p_value >= least,
+              fmt::format("{}: the p-value is {:.2g}, the minimum is {:g}.", finding.sentence, finding.p_value, least));
   }
 
  private:
-  static std::string count_text(double count) {
-    return count == 0 ? std::string("none") : fmt::format("{:.0f}", count);
-  }
+  static std::string count_text(double count) { return fmt::format("{:.0f}", count); }
 
   void require(bool holds, std::string otherwise) {
     if (!holds) reasons_.push_back(std::move(otherwise));
@@ -62,15 +59,15 @@ class RuleCheck {
 
   void check_finite(char image, std::uint64_t count) {
     const double most = thresholds_.limit(RuleMetric::non_finite);
-    require(
-        static_cast<double>(count) <= most,
-        fmt::format("Image {} has {} pixels with a NaN or an infinity; {} may have.", image, count, count_text(most)));
+    require(static_cast<double>(count) <= most,
+            fmt::format("Image {} has {} pixels with a NaN or an infinity; the limit is {}.", image, count,
+                        count_text(most)));
   }
 
   void check_mismatches(std::uint64_t count, const char* one, const char* several) {
     const double most = thresholds_.limit(RuleMetric::mismatches);
-    require(static_cast<double>(count) <= most,
-            fmt::format("{} {} without an excuse; {} may.", count, count == 1 ? one : several, count_text(most)));
+    require(static_cast<double>(count) <= most, fmt::format("{} {} beyond what rounding explains; the limit is {}.",
+                                                            count, count == 1 ? one : several, count_text(most)));
   }
 
   void check_fraction(RuleMetric metric, double fraction, const char* what) {

@@ -27,7 +27,7 @@ Format format_of(const std::filesystem::path& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".exr") return Format::exr;
   if (extension == ".png") return Format::png;
-  throw Error("cannot write '" + path.string() + "': the name of an image ends in .exr or .png");
+  throw Error("cannot write '" + path.string() + "': the file name must end in .exr or .png");
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -56,7 +56,7 @@ void write_image(const std::filesystem::path& path, const Image& image, const Im
     return Error("cannot write '" + path.string() + "': " + first_line(why));
   };
   if (image.pixels.empty()) throw fail("the image is empty");
-  if (format != Format::exr && !layers.empty()) throw fail("only an .exr has layers");
+  if (format != Format::exr && !layers.empty()) throw fail("only an .exr holds layers");
   AtomicFile target(path);
   ImageAttributes attributes;
   for (const auto& [key, value] : metadata) attributes.emplace(std::string(metadata_prefix) + key, value);

@@ -45,7 +45,7 @@ TexelStore store_texels(const Scene& scene) {
     store.texels.insert(store.texels.end(), image.texels.begin(), image.texels.end());
     store.texels.resize((store.texels.size() + word_size - 1) / word_size * word_size);
     if (store.texels.size() > std::numeric_limits<std::uint32_t>::max())
-      throw Error(fmt::format("the textures of {} have more texels than can be counted", scene.name));
+      throw Error(fmt::format("the textures of {} need more than 4 GiB of texels", scene.name));
   }
   for (const Texture& texture : scene.textures) {
     GpuTexture gpu = texture.gpu;

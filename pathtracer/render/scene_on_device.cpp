@@ -58,7 +58,7 @@ void SceneOnDevice::configure(const RenderSettings& settings) {
   if (settings.background) background_ = *settings.background;
   if (scene_.light_count() == 0 && !scene_.environment() && !settings.background) {
     background_ = glm::vec3(1);
-    warnings_.push_back(fmt::format("{}: nothing emits light; the background has radiance 1 instead of 0", name_));
+    warnings_.push_back(fmt::format("{}: no emitters, so the background is white with radiance 1", name_));
   }
   constants.background = background_;
   scene_.describe(constants);

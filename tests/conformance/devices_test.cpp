@@ -40,7 +40,7 @@ TEST_CASE("every device passes the kit, but for the known bugs of its driver") {
 }
 
 TEST_CASE("docs/results/backend-status.md has the kit's cases and the known driver bugs") {
-  std::ifstream file(TANDEM_SOURCE_DIRECTORY "/docs/backend-status.md");
+  std::ifstream file(TANDEM_SOURCE_DIRECTORY "/docs/results/backend-status.md");
   std::ostringstream status;
   status << file.rdbuf();
   const bool up_to_date = status.str().ends_with(catalogue(all_cases(), known_driver_bugs()));

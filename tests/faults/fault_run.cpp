@@ -146,9 +146,8 @@ bool same_recordings(pathtracer::SceneOnDevice& a, pathtracer::SceneOnDevice& b)
   return record_paths(a, spread_paths()) == record_paths(b, spread_paths());
 }
 
-/// Takes what a classification says into the finding. Of a fault that does harm only mismatches are of interest, of
-/// another whatever differs.
-/// @param counts whether a divergence of this class counts
+/// Adds the result of a classification to the finding.
+/// @param mismatches_only for a harmful fault, of which only mismatches count; else every divergence counts
 void take(const compare::Classification& found, bool mismatches_only, Finding& finding) {
   Tally tally;
   for (const compare::ClassifiedPath& path : found.paths) {

@@ -65,18 +65,19 @@ int measure_speed(const Options& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, Action& action) {
-  CLI::App* const command = app.add_subcommand("bench", "Measure how fast devices render a scene, taking turns");
+  CLI::App* const command = app.add_subcommand("bench", "Measure how fast devices render a scene, in alternating runs");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("--device", options->devices, "A device to measure; give it once for each, the first is the unit")
+  command
+      ->add_option("--device", options->devices,
+                   "Device to measure; repeat the option for each device. The first is the reference of the ratios")
       ->required()
       ->allow_extra_args(false)
       ->type_name("D");
-  add_whole_number(*command, "--repeat", options->rounds, 1, 10'000, "Rounds that count, after one to warm up");
-  command->add_option("--json", options->json, "Write all numbers, round by round, as JSON")->type_name("FILE");
+  add_whole_number(*command, "--repeat", options->rounds, 1, 10'000, "Measured rounds, after one warm-up round");
+  command->add_option("--json", options->json, "Write all measurements, round by round, as JSON")->type_name("FILE");
   command->footer(
-      "Times are those of the device (its timestamps where it has them) in milliseconds, without loading and "
-      "building.\n"
+      "Times are milliseconds on the device (by its timestamps where it has them), without loading and building.\n"
       "Example:\n"
       "  tandem bench scenes/cornell_box.obj --device vulkan --device cpu --repeat 9 --json bench.json");
   command->callback([&action, options] { action = [options] { return measure_speed(*options); }; });

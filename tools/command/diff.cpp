@@ -138,8 +138,8 @@ int diff(const Options& options) {
   std::optional<StoredRun> baseline;
   if (!options.baseline.empty()) {
     if (!options.folder.empty() && is_same_file(options.folder, options.baseline))
-      throw Error(
-          fmt::format("--out and --baseline are both '{}': the baseline would be lost", options.folder.string()));
+      throw Error(fmt::format("--out and --baseline are both '{}': the baseline would be overwritten",
+                              options.folder.string()));
     baseline = read_stored_run(options.baseline);
   }
   compare::Job job = load_job(options.render);
@@ -148,7 +148,7 @@ int diff(const Options& options) {
   compare::Session session = prepare(open_devices(options.comparison, options.render), std::move(job), wanted);
   if (baseline) {
     if (wanted.thresholds.tier == compare::Tier::statistical)
-      throw Error("--baseline cannot be combined with --tier statistical: its samples are not those of the baseline");
+      throw Error("--baseline cannot be combined with --tier statistical: its images have other samples");
     check_same_job(*baseline, session.summary, session.a.scene().camera(), session.a.scene().background());
   }
   Findings findings;
@@ -184,19 +184,20 @@ void add_diff_command(CLI::App& app, Action& action) {
   command->add_option("--json", options->json, "Write all numbers and the verdict as JSON")->type_name("FILE");
   command->add_option("--junit", options->junit, "Write the verdict as JUnit XML, for CI")->type_name("FILE");
   command
-      ->add_option("--out", options->folder,
-                   "Write a, b and their difference as .exr and .png, FLIP where measured, and diff.json, into this "
-                   "folder, made if it is "
-                   "missing")
+      ->add_option(
+          "--out", options->folder,
+          "Write both images and their difference as .exr and .png, diff.json and, where measured, flip.png into "
+          "this folder, which is created if missing")
       ->type_name("DIR");
   command
-      ->add_option("--report", options->report,
-                   "Write a page with images, numbers and paths, index.html, into this folder, made if it is missing; "
-                   "measures --metrics all unless told otherwise")
+      ->add_option(
+          "--report", options->report,
+          "Write index.html, a page with images, numbers and paths, into this folder, which is created if missing; "
+          "implies --metrics all unless --metrics is given")
       ->type_name("DIR");
   command
       ->add_option("--baseline", options->baseline,
-                   "Compare with the run of the same scene and settings that --out stored in this folder")
+                   "Compare also with an earlier run of the same scene and settings, stored in this folder by --out")
       ->type_name("DIR");
   add_comparison_options(*command, options->comparison);
   add_tone_options(*command, options->tone);

@@ -47,27 +47,25 @@ int run(const Options& options) {
 
 void add_explain_command(CLI::App& app, Action& action) {
   CLI::App* const command =
-      app.add_subcommand("explain", "Say where the paths of one pixel part on two devices, and why");
+      app.add_subcommand("explain", "Show where the paths of one pixel diverge between two devices, and why");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
   compare::ExplanationOptions& explanation = options->explanation;
-  add_pixel(*command, "--pixel", explanation.pixel, "The pixel, from 0,0 in the upper left corner on")->required();
+  add_pixel(*command, "--pixel", explanation.pixel, "The pixel; 0,0 is the upper left corner")->required();
   add_whole_number(*command, "--sample", explanation.sample, 0, 0xffffffffU,
-                   "One of its samples [all are compared, and the first that differs is shown]");
+                   "Compare and show only this sample [compare all, show the first that differs]");
   command->add_option("--a", options->a, "The first device, the reference")->type_name("D1")->capture_default_str();
   command->add_option("--b", options->b, "The second device")->type_name("D2")->capture_default_str();
-  command->add_option("--arbiter", options->arbiter, "The device that says which answer to a ray is right")
+  command->add_option("--arbiter", options->arbiter, "Device that decides which of two ray hits is right")
       ->type_name("D3")
       ->capture_default_str();
   add_tracing_mode(*command, "--trace-a", explanation.trace_a, "As --trace, for the first device only");
   add_tracing_mode(*command, "--trace-b", explanation.trace_b, "As --trace, for the second device only");
-  command->add_flag("--all-events", options->all_events,
-                    "Show every event with every field, not only those where the paths part");
+  command->add_flag("--all-events", options->all_events, "Show every field of every event, not only those that differ");
   command->add_flag_function(
       "--probe,!--no-probe", [options](std::int64_t count) { options->explanation.probe = count > 0; },
-      "Ask both devices the rays of the path in other ways too (masks, culling, instances, ...) [if the paths are the "
-      "same]");
-  command->add_option("--json", options->json, "Write all of it as JSON")->type_name("FILE");
+      "Also trace the rays of the path under masks, culling, transformed instances, ... [if the paths are equal]");
+  command->add_option("--json", options->json, "Write all events and classes as JSON")->type_name("FILE");
   command->footer(
       "Exit code: 0 nothing but rounding and ties, 1 a mismatch: one of the devices is wrong, 2 error.\n"
       "Examples:\n"

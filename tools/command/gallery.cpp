@@ -92,26 +92,26 @@ int render_gallery(const Options& options) {
 }  // namespace
 
 void add_gallery_command(CLI::App& app, Action& action) {
-  CLI::App* const command = app.add_subcommand(
-      "gallery", "Render all scenes of a list on two devices into a page with pictures and verdicts");
+  CLI::App* const command =
+      app.add_subcommand("gallery", "Compare two devices on a list of scenes, in one page with images and verdicts");
   const auto options = std::make_shared<Options>();
   command->add_option("LIST", options->list, "The list of scenes")->type_name("FILE.json")->capture_default_str();
   command->add_option("--out", options->folder, "Folder for gallery.md, gallery.json and images/gallery/*.png")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--device", options->devices, "The two devices; the first one is the reference")
+  command->add_option("--device", options->devices, "The two devices; the first is the reference")
       ->expected(2)
       ->type_name("A B")
       ->capture_default_str();
-  command->add_option("--only", options->only, "Render these scenes only")->type_name("NAME");
-  add_size(*command, "--size", options->size, "Width and height in pixels [512x512, or what a scene says]");
-  add_whole_number(*command, "--spp", options->samples, 1, 1U << 24, "Samples per pixel [what the list says]");
+  command->add_option("--only", options->only, "Render only these scenes")->type_name("NAME");
+  add_size(*command, "--size", options->size, "Width and height in pixels [the scene file's, or else 512x512]");
+  add_whole_number(*command, "--spp", options->samples, 1, 1U << 24, "Samples per pixel [those of the list]");
   add_whole_number(*command, "--threads", options->threads, 0, 1024,
-                   "Worker threads of the CPU device; 0: as many as the machine has");
+                   "Worker threads of the CPU devices; 0: one per hardware thread");
   command->footer(
       "Exit code: 0 every scene agrees, 1 one differs beyond its thresholds, 2 error.\n"
       "Examples:\n"
-      "  tandem gallery --out docs\n"
+      "  tandem gallery --out docs/results\n"
       "  tandem gallery --device cpu vulkan:1 --size 256x256 --only veach_mis --out gallery");
   command->callback([&action, options] { action = [options] { return render_gallery(*options); }; });
 }

@@ -40,7 +40,7 @@ void add_generate_command(CLI::App& app, Action& action) {
       app.add_subcommand("generate", "Write a scene of any size: the Cornell box filled with displaced spheres");
   const auto options = std::make_shared<Options>();
   add_whole_number(*command, "--triangles", options->triangles, pathtracer::minimum_generated_triangles,
-                   pathtracer::maximum_generated_triangles, "About how many triangles");
+                   pathtracer::maximum_generated_triangles, "Approximate number of triangles");
   command->add_option("-o,--output", options->output, "Wavefront OBJ file; its MTL file is written beside it")
       ->required()
       ->type_name("FILE.obj");

@@ -11,12 +11,12 @@ namespace {
 void add_batch_options(CLI::App& command, compare::BatchOptions& options) {
   CLI::App& group = *command.add_option_group("Tier statistical");
   add_whole_number(group, "--batches", options.batches, compare::fewest_batches, 1U << 16,
-                   "Batches into which the samples are divided, each under a seed of its own, from which the noise is "
-                   "known [as many as samples, from 8 to 32]");
+                   "Number of batches, each with its own seed, into which the samples are divided to measure the noise "
+                   "[one per sample, from 8 to 32]");
   add_whole_number(group, "--tile", options.tile, compare::smallest_tile, 1U << 16,
-                   "Side in pixels of the tiles that are tested");
+                   "Side of the tested tiles in pixels");
   add_whole_number(group, "--seed-b", options.seed_b, 0, UINT32_MAX,
-                   "Seed of the first batch of the second device [one that the first does not use]");
+                   "Seed of the second device's first batch [one that the first device does not use]");
 }
 
 }  // namespace
@@ -26,21 +26,23 @@ void add_comparison_options(CLI::App& command, ComparisonArguments& arguments) {
   add_tracing_mode(command, "--trace-a", options.trace_a, "As --trace, for the first device only");
   add_tracing_mode(command, "--trace-b", options.trace_b, "As --trace, for the second device only");
   add_named(command, "--metrics", options.metrics, compare::metric_set_names(),
-            "all: FLIP and a table of regions too, which takes some seconds [basic]");
+            "all: also FLIP and a table of regions, which take some seconds [basic]");
   command.add_flag("--classify", options.classify,
-                   "Say why pixels differ: rounding, a tie, a decision that rounding turned, or a mismatch");
+                   "Classify why pixels differ: rounding, a tie, a decision flipped by rounding, or a mismatch");
   add_whole_number(command, "--classify-pixels", options.classification.pixel_limit, 1, std::uint64_t{1} << 24,
-                   "Pixels to classify at most, spread evenly over those that differ");
-  add_whole_number(command, "--survey", options.classification.survey_pixels, 0, std::uint64_t{1} << 24,
-                   "Pixels all over the picture whose paths are compared whether they differ or not");
-  command.add_option("--arbiter", arguments.arbiter, "The device that says which answer to a ray is right")
+                   "Maximum number of pixels to classify, spread evenly over those that differ");
+  add_whole_number(
+      command, "--survey", options.classification.survey_pixels, 0, std::uint64_t{1} << 24,
+      "Number of further pixels, spread over the whole image, whose paths are compared even if the pixels agree");
+  command.add_option("--arbiter", arguments.arbiter, "Device that decides which of two ray hits is right")
       ->type_name("D3")
       ->capture_default_str();
-  command.add_flag("--probe", options.probe,
-                   "Ask the scene's geometry in ways that the path tracer does not use, too: under masks, culling, "
-                   "other ranges of t, moved and mirrored, updated, ...");
+  command.add_flag(
+      "--probe", options.probe,
+      "Also trace recorded rays with features of acceleration structures and rays that the path tracer does not "
+      "use: masks, culling, ranges of t, transformed and mirrored instances, updates, ...");
   add_whole_number(command, "--probe-rays", options.probe_rays, 1, std::uint64_t{1} << 19,
-                   "Rays to probe with at most, of paths all over the picture");
+                   "Maximum number of rays to probe with, from paths spread over the whole image");
   add_threshold_options(command, arguments.thresholds);
   add_batch_options(command, options.batches);
 }
@@ -53,9 +55,7 @@ compare::ComparisonOptions comparison_options(const ComparisonArguments& argumen
   if (!options.trace_a) options.trace_a = render_options.trace;
   if (!options.trace_b) options.trace_b = render_options.trace;
   if (options.thresholds.tier == compare::Tier::statistical && options.classify)
-    throw Error(
-        "--classify cannot be combined with --tier statistical: there a and b take other samples, so no two paths "
-        "correspond");
+    throw Error("--classify cannot be combined with --tier statistical: a and b have no paths in common");
   return options;
 }
 

@@ -15,7 +15,7 @@ namespace {
 using Json = nlohmann::json;
 
 [[noreturn]] void refuse(const std::filesystem::path& folder, const std::string& reason) {
-  throw Error(fmt::format("'{}' holds no run of 'tandem diff --out': {}", folder.string(), reason));
+  throw Error(fmt::format("'{}' does not hold a run of 'tandem diff --out': {}", folder.string(), reason));
 }
 
 /// What settings may be called differently without being different.
@@ -44,7 +44,7 @@ StoredRun read_stored_run(const std::filesystem::path& folder) {
     run.report = Json::parse(read_text(folder / stored_report));
     // Whatever is read later.
     for (const char* key : {"settings", "device_a", "device_b"})
-      if (!run.report.at(key).is_object()) throw Error(fmt::format("'{}' of {} is no object", key, stored_report));
+      if (!run.report.at(key).is_object()) throw Error(fmt::format("'{}' of {} is not an object", key, stored_report));
     for (const char* key : {"ms_a", "ms_b"}) run.report.at(key).get<double>();
     run.a = pathtracer::read_image(folder / "a.exr");
     run.b = pathtracer::read_image(folder / "b.exr");
@@ -64,7 +64,7 @@ void check_same_job(const StoredRun& run, const compare::JobSummary& job, const 
   const auto fail = [&](const std::string& reason) {
     throw Error(fmt::format("the run in '{}' cannot be the baseline: {}", run.folder.string(), reason));
   };
-  if (run.report.contains("statistics")) fail("its images are of tier statistical, each of many seeds");
+  if (run.report.contains("statistics")) fail("its images are of tier statistical, the means of many seeds");
   if (before.value("scene_hash", Json()) != now.at("scene_hash"))
     fail(fmt::format("the content of {} has changed since", job.scene));
   for (const auto& [key, value] : now.items()) {

@@ -40,7 +40,7 @@ std::vector<GalleryScene> read_gallery(const std::filesystem::path& path) {
     scene.title = object.require("title").text();
     object.read("samples", scene.samples, &Value::whole_number, 1u, 1u << 24);
     if (std::ranges::any_of(scenes, [&](const GalleryScene& other) { return other.name == scene.name; }))
-      value.fail(fmt::format("has the name of another, {}", scene.name));
+      value.fail(fmt::format("has the same name as another scene, {}", scene.name));
     scenes.push_back(scene);
   }
   if (scenes.empty()) root.require("scenes").fail("must not be empty");

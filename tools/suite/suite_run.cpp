@@ -124,7 +124,7 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
   } catch (const Cancelled&) {
     throw;
   } catch (const std::bad_alloc&) {
-    fail("there is not enough memory for this scene and image size");
+    fail("not enough memory for this scene and image size");
   } catch (const std::exception& error) {
     fail(error.what());
   }

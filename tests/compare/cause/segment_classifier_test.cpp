@@ -170,7 +170,7 @@ TEST_CASE("roulette whose number lies between two roundings of its threshold is 
   REQUIRE(classified.divergences.size() == 2);
   CHECK(classified.divergences[0].difference_class == DifferenceClass::rounding);
   CHECK(classified.divergences[1].difference_class == DifferenceClass::flipped_decision);
-  CHECK(says(classified.divergences[1], "roulette goes on on a and ends the path on b") == true);
+  CHECK(says(classified.divergences[1], "roulette continues the path on a and ends it on b") == true);
   // One that does not do what its own numbers say is wrong, unless rounding explains even that.
   const PathEvents wrong = {state, roulette_event(below, threshold, false)};
   classified = segment(a, wrong);

@@ -60,7 +60,7 @@ TEST_CASE("each rule that is broken gives its own reason, with the numbers") {
 
   metrics = good_metrics();
   metrics.non_finite_b = 1;
-  CHECK(only_reason({.metrics = metrics}) == "Image b has 1 pixels with a NaN or an infinity; none may have.");
+  CHECK(only_reason({.metrics = metrics}) == "Image b has 1 pixels with a NaN or an infinity; the limit is 0.");
 
   CHECK(only_reason({.metrics = good_metrics()}, with(Tier::tolerance, RuleMetric::bit_equal, 0.95)) ==
         "Only 90.0000 % of the pixels are bit-equal; at least 95 % must be.");
@@ -97,16 +97,16 @@ TEST_CASE("tier exact wants every bit, whatever the limits of the tolerance") {
   CHECK(make_verdict({.metrics = metrics}, exact).tier == Tier::exact);
   metrics.bit_equal = 1.0 - 1.0 / 4'000'000;
   CHECK(only_reason({.metrics = metrics}, exact) ==
-        "1 of 4000000 pixels do not have the same bits; tier exact wants all.");
+        "1 of 4000000 pixels do not have the same bits; tier exact requires all to.");
 }
 
 TEST_CASE("a path that differs without an excuse breaks every tier") {
   Metrics metrics = good_metrics();
   CHECK(only_reason({.metrics = metrics, .mismatches = 1, .bias = {}}) ==
-        "1 path differs without an excuse; none may.");
+        "1 path differs beyond what rounding explains; the limit is 0.");
   CHECK(make_verdict({.metrics = metrics, .mismatches = 0, .bias = {}}).agree);
   CHECK(only_reason({.metrics = metrics, .probe_mismatches = 2}) ==
-        "2 answers to probes differ without an excuse; none may.");
+        "2 answers to probes differ beyond what rounding explains; the limit is 0.");
   CHECK(make_verdict({.metrics = metrics, .probe_mismatches = 0}).agree);
   metrics.bit_equal = 1;
   CHECK_FALSE(make_verdict({.metrics = metrics, .mismatches = 7, .bias = {}}, of(Tier::exact)).agree);
@@ -121,8 +121,7 @@ TEST_CASE("tier statistical asks for p-values, not for pixels") {
   const auto evidence = [&](double p) { return Evidence{metrics, {}, {{"Image b is darker", p}, {"Nothing", 1.0}}}; };
   CHECK(make_verdict(evidence(1e-4), of(Tier::statistical)).agree);
   CHECK(only_reason(evidence(2e-5), of(Tier::statistical)) ==
-        "Image b is darker: chance alone would do that with probability 2e-05, and 0.0001 is the least that passes "
-        "for chance.");
+        "Image b is darker: the p-value is 2e-05, the minimum is 0.0001.");
   CHECK(make_verdict(evidence(2e-5), with(Tier::statistical, RuleMetric::bias_p_value, 1e-5)).agree);
   CHECK_THROWS_AS(make_verdict({.metrics = metrics}, of(Tier::statistical)), std::invalid_argument);
   metrics.non_finite_a = 1;

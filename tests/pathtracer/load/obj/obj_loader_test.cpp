@@ -150,7 +150,7 @@ TEST_CASE("What cannot be meant is one sentence with file and line") {
   CHECK(contains(error_of("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "test.obj:2: "));
   CHECK(contains(error_of("v 0 0 0\nv 0 inf 0\nv 0 1 0\nf 1 2 3\n"), "'inf'"));
   CHECK(contains(error_of("v 0 0 0\nv 0 1e39 0\nv 0 1 0\nf 1 2 3\n"), "'1e39'"));
-  CHECK(contains(error_of("v 0 0 0\nv 0 1e400 0\nv 0 1 0\nf 1 2 3\n"), "'1e400' is no finite number"));
+  CHECK(contains(error_of("v 0 0 0\nv 0 1e400 0\nv 0 1 0\nf 1 2 3\n"), "'1e400' is not a finite number"));
   CHECK(contains(error_of("v 0 0 0\nv 0 -2e12 0\nv 0 1 0\nf 1 2 3\n"), "'-2e12' is beyond 1e+12"));
   CHECK(
       contains(error_of("v 1" + std::string(330, '0') + "e-330 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "too many digits"));
