@@ -7,9 +7,9 @@
 
 #include <glm/common.hpp>
 
-// rhi_cpu/trace/exact/bvh.cpp splits the tree of the device cpu-exact in the same way. The two share no code on purpose:
-// the reference tracer of the probes, which uses this one, judges that device too, and a fault that they had in common
-// would stay unseen.
+// rhi_cpu/trace/exact/bvh.cpp splits the tree of the device cpu-exact in the same way. The two share no code on
+// purpose: the reference tracer of the probes, which uses this one, judges that device too, and a fault that they had
+// in common would stay unseen.
 
 namespace tandem::compare {
 
