@@ -101,7 +101,8 @@ inline constexpr ExtendedInstruction extended_instructions[] = {
     {GLSLstd450Modf, "modf", Sign::any, ExtendedShape::split_into_pointer},
     {GLSLstd450ModfStruct, "modf", Sign::any, ExtendedShape::split_into_struct},
     {GLSLstd450Frexp, "frexp", Sign::any, ExtendedShape::split_into_pointer},
-    {GLSLstd450FrexpStruct, "frexp", Sign::any, ExtendedShape::split_into_struct}};
+    {GLSLstd450FrexpStruct, "frexp", Sign::any, ExtendedShape::split_into_struct},
+};
 
 /// Null when the table has none.
 constexpr const ExtendedInstruction* find_extended(std::uint32_t instruction) {

@@ -35,7 +35,8 @@ constexpr FormatNames formats[] = {
     {spv::ImageFormatRg32f, TextureFormat::rg32_float, TexelFormat::rg32_float, "rg32_float"},
     {spv::ImageFormatRgba32ui, TextureFormat::rgba32_uint, TexelFormat::rgba32_uint, "rgba32_uint"},
     {spv::ImageFormatRgba32i, TextureFormat::rgba32_sint, TexelFormat::rgba32_sint, "rgba32_sint"},
-    {spv::ImageFormatRgba32f, TextureFormat::rgba32_float, TexelFormat::rgba32_float, "rgba32_float"}};
+    {spv::ImageFormatRgba32f, TextureFormat::rgba32_float, TexelFormat::rgba32_float, "rgba32_float"},
+};
 
 /// A kernel reads Image::format, which is an rhi::TextureFormat, as a kernel::TexelFormat.
 constexpr bool have_equal_numbers() {

@@ -162,7 +162,8 @@ inline constexpr Operation operations[] = {
     {spv::OpRayQueryGetIntersectionObjectRayDirectionKHR, Shape::ray_query_getter, "IntersectionObjectRayDirection"},
     {spv::OpRayQueryGetIntersectionObjectRayOriginKHR, Shape::ray_query_getter, "IntersectionObjectRayOrigin"},
     {spv::OpRayQueryGetIntersectionObjectToWorldKHR, Shape::ray_query_getter, "IntersectionObjectToWorld"},
-    {spv::OpRayQueryGetIntersectionWorldToObjectKHR, Shape::ray_query_getter, "IntersectionWorldToObject"}};
+    {spv::OpRayQueryGetIntersectionWorldToObjectKHR, Shape::ray_query_getter, "IntersectionWorldToObject"},
+};
 
 /// The operation of an instruction; null when it is none of the table.
 constexpr const Operation* find_operation(spv::Op op) {

@@ -17,6 +17,7 @@
 #include "rhi_cpu/translate/instruction.hpp"
 #include "rhi_cpu/translate/operations.hpp"
 #include "rhi_cpu/translate/scalar_types.hpp"
+#include "rhi_cpu/translate/storage_classes.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"
 
 namespace tandem::cpu {
@@ -99,7 +100,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string constant_initializer(const spirv_cross::SPIRConstant& constant);
 
   // printer_memory.cpp: pointers, loads, stores.
-  bool is_buffer(spv::StorageClass storage) const;
   bool is_buffer_pointer(std::uint32_t id);
   std::uint32_t pointee(std::uint32_t pointer_type_id) const;
   std::uint32_t matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const;
@@ -165,8 +165,6 @@ class Printer : public spirv_cross::CompilerGLSL {
 
   // printer_ray_tracing.cpp: the stages of a ray tracing pipeline.
   bool is_traced() const;
-  bool is_payload(spv::StorageClass storage) const;
-  bool is_incoming_payload(spv::StorageClass storage) const;
   void set_up_endings();
   /// The statement that ends the function being printed, and with it the shader.
   std::string ending();
@@ -204,7 +202,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   // Operands.
   std::string value(std::uint32_t id) { return to_expression(id); }
   const Type& type_of(std::uint32_t id) { return get<Type>(expression_type_id(id)); }
-  /// The operand as components of `base`, converted when it has another signedness.
+  /// The operand as components of `base`, or of the signedness `sign`, converted when it has others.
   std::string value_as(std::uint32_t id, BaseType base);
   std::string value_with_sign(std::uint32_t id, Sign sign);
   /// Operands `first` and following, with commas between them.

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <iterator>
+
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 
@@ -8,47 +11,52 @@ Printer::PrintFunction Printer::by_hand(spv::Op op) {
     spv::Op op;
     PrintFunction print;
   };
-  static constexpr Row rows[] = {{spv::OpNop, &Printer::print_nothing},
-                                 {spv::OpNoLine, &Printer::print_nothing},
-                                 {spv::OpLine, &Printer::print_line},
-                                 {spv::OpFunctionCall, &Printer::print_call},
-                                 {spv::OpExtInst, &Printer::print_extended},
-                                 // memory
-                                 {spv::OpLoad, &Printer::print_load},
-                                 {spv::OpStore, &Printer::print_store},
-                                 {spv::OpCopyMemory, &Printer::print_copy_memory},
-                                 {spv::OpAccessChain, &Printer::print_access_chain},
-                                 {spv::OpInBoundsAccessChain, &Printer::print_access_chain},
-                                 {spv::OpArrayLength, &Printer::print_array_length},
-                                 {spv::OpAtomicLoad, &Printer::print_atomic_load},
-                                 {spv::OpAtomicStore, &Printer::print_atomic_store},
-                                 {spv::OpAtomicCompareExchange, &Printer::print_compare_exchange},
-                                 {spv::OpMemoryBarrier, &Printer::print_memory_barrier},
-                                 // images
-                                 {spv::OpImageRead, &Printer::print_image_read},
-                                 {spv::OpImageWrite, &Printer::print_image_write},
-                                 {spv::OpImageQuerySize, &Printer::print_image_size},
-                                 {spv::OpImageTexelPointer, &Printer::print_texel_pointer},
-                                 // composites
-                                 {spv::OpCompositeConstruct, &Printer::print_construct},
-                                 {spv::OpCompositeExtract, &Printer::print_extract},
-                                 {spv::OpCompositeInsert, &Printer::print_insert},
-                                 {spv::OpVectorExtractDynamic, &Printer::print_extract_dynamic},
-                                 {spv::OpVectorInsertDynamic, &Printer::print_insert_dynamic},
-                                 {spv::OpVectorShuffle, &Printer::print_shuffle},
-                                 {spv::OpCopyObject, &Printer::print_copy},
-                                 {spv::OpCopyLogical, &Printer::print_copy_logical},
-                                 // bits
-                                 {spv::OpBitcast, &Printer::print_bitcast},
-                                 {spv::OpConvertUToPtr, &Printer::print_bitcast},
-                                 {spv::OpConvertPtrToU, &Printer::print_bitcast},
-                                 {spv::OpBitCount, &Printer::print_bit_count},
-                                 // ray tracing pipelines
-                                 {spv::OpTraceRayKHR, &Printer::print_trace_ray},
-                                 {spv::OpExecuteCallableKHR, &Printer::print_execute_callable},
-                                 {spv::OpReportIntersectionKHR, &Printer::print_report_intersection},
-                                 {spv::OpIgnoreIntersectionKHR, &Printer::print_ignore_intersection},
-                                 {spv::OpTerminateRayKHR, &Printer::print_terminate_ray}};
+  static constexpr Row rows[] = {
+      {spv::OpNop, &Printer::print_nothing},
+      {spv::OpNoLine, &Printer::print_nothing},
+      {spv::OpLine, &Printer::print_line},
+      {spv::OpFunctionCall, &Printer::print_call},
+      {spv::OpExtInst, &Printer::print_extended},
+      // memory
+      {spv::OpLoad, &Printer::print_load},
+      {spv::OpStore, &Printer::print_store},
+      {spv::OpCopyMemory, &Printer::print_copy_memory},
+      {spv::OpAccessChain, &Printer::print_access_chain},
+      {spv::OpInBoundsAccessChain, &Printer::print_access_chain},
+      {spv::OpArrayLength, &Printer::print_array_length},
+      {spv::OpAtomicLoad, &Printer::print_atomic_load},
+      {spv::OpAtomicStore, &Printer::print_atomic_store},
+      {spv::OpAtomicCompareExchange, &Printer::print_compare_exchange},
+      {spv::OpMemoryBarrier, &Printer::print_memory_barrier},
+      // images
+      {spv::OpImageRead, &Printer::print_image_read},
+      {spv::OpImageWrite, &Printer::print_image_write},
+      {spv::OpImageQuerySize, &Printer::print_image_size},
+      {spv::OpImageTexelPointer, &Printer::print_texel_pointer},
+      // composites
+      {spv::OpCompositeConstruct, &Printer::print_construct},
+      {spv::OpCompositeExtract, &Printer::print_extract},
+      {spv::OpCompositeInsert, &Printer::print_insert},
+      {spv::OpVectorExtractDynamic, &Printer::print_extract_dynamic},
+      {spv::OpVectorInsertDynamic, &Printer::print_insert_dynamic},
+      {spv::OpVectorShuffle, &Printer::print_shuffle},
+      {spv::OpCopyObject, &Printer::print_copy},
+      {spv::OpCopyLogical, &Printer::print_copy_logical},
+      // bits
+      {spv::OpBitcast, &Printer::print_bitcast},
+      {spv::OpConvertUToPtr, &Printer::print_bitcast},
+      {spv::OpConvertPtrToU, &Printer::print_bitcast},
+      {spv::OpBitCount, &Printer::print_bit_count},
+      // ray tracing pipelines
+      {spv::OpTraceRayKHR, &Printer::print_trace_ray},
+      {spv::OpExecuteCallableKHR, &Printer::print_execute_callable},
+      {spv::OpReportIntersectionKHR, &Printer::print_report_intersection},
+      {spv::OpIgnoreIntersectionKHR, &Printer::print_ignore_intersection},
+      {spv::OpTerminateRayKHR, &Printer::print_terminate_ray},
+  };
+  static_assert(
+      std::none_of(std::begin(rows), std::end(rows), [](const Row& row) { return find_operation(row.op) != nullptr; }),
+      "an instruction is printed in one way");
   for (const Row& row : rows)
     if (row.op == op) return row.print;
   return nullptr;

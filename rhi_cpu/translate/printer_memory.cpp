@@ -15,12 +15,6 @@ std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
 
 }  // namespace
 
-bool Printer::is_buffer(spv::StorageClass storage) const {
-  return storage == spv::StorageClassUniform || storage == spv::StorageClassStorageBuffer ||
-         storage == spv::StorageClassPushConstant || storage == spv::StorageClassShaderRecordBufferKHR ||
-         storage == spv::StorageClassPhysicalStorageBuffer;
-}
-
 bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && is_pointer(type_of(id)); }
 
 std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const {

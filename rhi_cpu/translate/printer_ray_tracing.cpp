@@ -14,14 +14,6 @@ using spirv_cross::SPIRVariable;
 
 bool Printer::is_traced() const { return reflection_.stage != rhi::ShaderStage::compute; }
 
-bool Printer::is_payload(spv::StorageClass storage) const {
-  return storage == spv::StorageClassRayPayloadKHR || storage == spv::StorageClassCallableDataKHR;
-}
-
-bool Printer::is_incoming_payload(spv::StorageClass storage) const {
-  return storage == spv::StorageClassIncomingRayPayloadKHR || storage == spv::StorageClassIncomingCallableDataKHR;
-}
-
 void Printer::set_up_endings() {
   // OpIgnoreIntersectionKHR and OpTerminateRayKHR end blocks. They become instructions in front of a Kill, which
   // SPIRV-Cross takes for a block that nothing follows.

@@ -15,10 +15,12 @@ struct Integer {
   BaseType as_unsigned;
 };
 
-constexpr Integer integers[] = {{SPIRType::SByte, SPIRType::UByte},
-                                {SPIRType::Short, SPIRType::UShort},
-                                {SPIRType::Int, SPIRType::UInt},
-                                {SPIRType::Int64, SPIRType::UInt64}};
+constexpr Integer integers[] = {
+    {SPIRType::SByte, SPIRType::UByte},
+    {SPIRType::Short, SPIRType::UShort},
+    {SPIRType::Int, SPIRType::UInt},
+    {SPIRType::Int64, SPIRType::UInt64},
+};
 
 const Integer* integer_of(BaseType base) {
   for (const Integer& each : integers)
