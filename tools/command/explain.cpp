@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/error.hpp"
 #include "compare/session/explanation.hpp"
 #include "tools/command.hpp"
 #include "tools/options/job.hpp"
@@ -27,9 +28,21 @@ struct Options {
   std::filesystem::path json;  ///< empty: none
 };
 
+/// As explain would, but naming the options, and before devices are opened.
+void check(const Options& options, const compare::Job& job) {
+  const compare::ExplanationOptions& wanted = options.explanation;
+  if (wanted.pixel.x >= job.settings.width || wanted.pixel.y >= job.settings.height)
+    throw Error(fmt::format("--pixel {},{} is outside the image of {}x{} pixels", wanted.pixel.x, wanted.pixel.y,
+                            job.settings.width, job.settings.height));
+  if (wanted.sample && *wanted.sample >= job.samples)
+    throw Error(fmt::format("--sample {} does not exist: the pixel has samples 0 to {} (--spp {})", *wanted.sample,
+                            job.samples - 1, job.samples));
+}
+
 int run(const Options& options) {
   if (!options.json.empty()) check_output_path(options.json);
   const compare::Job job = load_job(options.render);
+  check(options, job);
   compare::ExplanationOptions explanation_options = options.explanation;
   if (!explanation_options.trace_a) explanation_options.trace_a = options.render.trace;
   if (!explanation_options.trace_b) explanation_options.trace_b = options.render.trace;
