@@ -7,10 +7,13 @@ set(TANDEM_INSTALL_HEADERS "${CMAKE_INSTALL_INCLUDEDIR}/tandem")
 set(TANDEM_INSTALL_PACKAGE "${CMAKE_INSTALL_LIBDIR}/cmake/Tandem")
 set(TANDEM_INSTALL_DATA "${CMAKE_INSTALL_DATADIR}/tandem")
 
-# The program links Tandem's libraries statically; the path is for shared builds of what a user puts beside it.
+# The program links Tandem's libraries statically, and opens the module for pictures, which lies below them.
 file(RELATIVE_PATH tandem_binaries_to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
-set_target_properties(tandem PROPERTIES INSTALL_RPATH "$ORIGIN/${tandem_binaries_to_libraries}")
+set_target_properties(tandem PROPERTIES INSTALL_RPATH "$ORIGIN/${tandem_binaries_to_libraries}/tandem")
 install(TARGETS tandem RUNTIME)
+if(TARGET tandem_image_openimageio)
+  install(TARGETS tandem_image_openimageio LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/tandem")
+endif()
 
 # Every library of the project, except those that only its tests use.
 get_property(tandem_libraries GLOBAL PROPERTY TANDEM_LIBRARIES)
