@@ -48,7 +48,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${TANDEM_INSTALL_
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.rgen" PATTERN "*.rmiss" PATTERN "*.rchit" PATTERN "*.rahit" PATTERN "*.rint")
 # Whole, but for what makes scenes and what needs files that do not ship; schemas lie where the scenes look for them.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/scenes" DESTINATION "${TANDEM_INSTALL_DATA}"
-        PATTERN generators EXCLUDE PATTERN thesis EXCLUDE)
+        PATTERN generators EXCLUDE PATTERN thesis EXCLUDE PATTERN "*.py" EXCLUDE)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs/schema" DESTINATION "${TANDEM_INSTALL_DATA}/docs")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 

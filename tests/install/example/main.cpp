@@ -1,10 +1,12 @@
-// Lists the devices, renders a scene on the CPU twice, on one thread and on all of them, and compares the two images.
+// Lists the devices, renders a scene on the CPU twice, on one thread and on all of them, compares the two images, and
+// writes one of them.
 
 #include <compare/metrics/metrics.hpp>
 #include <compare/verdict/verdict.hpp>
 #include <cstdio>
 #include <devices/devices.hpp>
 #include <exception>
+#include <pathtracer/image/image_io.hpp>
 #include <pathtracer/load/obj/obj_loader.hpp>
 #include <pathtracer/render/renderer.hpp>
 
@@ -33,8 +35,8 @@ pathtracer::Image render(const pathtracer::Scene& scene, std::uint32_t threads) 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: example SCENE.obj\n");
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: example SCENE.obj IMAGE.exr\n");
     return 2;
   }
   try {
@@ -42,13 +44,15 @@ int main(int argc, char** argv) {
       std::printf("%s: %s, %s\n", device.name.c_str(), device.description.c_str(), device.driver.c_str());
     }
     const pathtracer::Scene scene = pathtracer::load_obj(argv[1]);
-    const compare::Metrics metrics = compare::measure(render(scene, 1), render(scene, 0));
+    const pathtracer::Image image = render(scene, 1);
+    const compare::Metrics metrics = compare::measure(image, render(scene, 0));
     // The result of the CPU device does not depend on the number of threads, so every bit must be the same.
     compare::Thresholds thresholds;
     thresholds.tier = compare::Tier::exact;
     const compare::Verdict verdict = compare::judge({.metrics = metrics}, thresholds);
     std::printf("mean radiance %g, %g of the pixels bit-equal: %s\n", metrics.mean_a, metrics.bit_equal,
                 compare::name(verdict));
+    pathtracer::write_image(argv[2], image, {});
     return verdict.agree && metrics.mean_a > 0.0 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "example: %s\n", error.what());
