@@ -32,6 +32,10 @@ Format format_of(const std::filesystem::path& path) {
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
+Error write_error(const std::filesystem::path& path, const std::string& why) {
+  return Error("cannot write '" + path.string() + "': " + first_line(why));
+}
+
 }  // namespace
 
 std::vector<ImageChannel> color_channels(const Image& image) {
@@ -46,15 +50,18 @@ std::vector<ImageChannel> color_channels(const Image& image) {
 
 void check_image_path(const std::filesystem::path& path) {
   format_of(path);
+  try {
+    require_image_codec();
+  } catch (const Error& error) {
+    throw write_error(path, error.what());
+  }
   const AtomicFile probe(path);
 }
 
 void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata, const Tone& tone,
                  std::span<const ImageChannel> layers) {
   const Format format = format_of(path);
-  const auto fail = [&](const std::string& why) {
-    return Error("cannot write '" + path.string() + "': " + first_line(why));
-  };
+  const auto fail = [&](const std::string& why) { return write_error(path, why); };
   if (image.pixels.empty()) throw fail("the image is empty");
   if (format != Format::exr && !layers.empty()) throw fail("only an .exr holds layers");
   AtomicFile target(path);

@@ -61,10 +61,10 @@ std::vector<PathSummary> record(SceneOnDevice& scene, std::span<const PathStart>
   const rhi::BufferHandle log = output(event_count, sizeof(PathEvent), "event log");
   const rhi::BufferHandle summaries = output(starts.size(), sizeof(PathSummary), "path summaries");
   const DispatchConstants constants{.tile_size = {starts.size(), 1}};
-  scene.run(PathTraceTask::log,
-            std::array{log, rhi::create_filled(device, gpu_starts, rhi::BufferUsage::storage, "path starts"),
-                       summaries},
-            {&constants, 1});
+  scene.run(
+      PathTraceTask::log,
+      std::array{log, rhi::create_filled(device, gpu_starts, rhi::BufferUsage::storage, "path starts"), summaries},
+      {&constants, 1});
   events = event_count == 0 ? PathEvents{} : rhi::read<PathEvent>(device, log, event_count);
   return rhi::read<PathSummary>(device, summaries, starts.size());
 }

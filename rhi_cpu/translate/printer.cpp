@@ -7,7 +7,6 @@
 #include "rhi_cpu/translate/identifiers.hpp"
 #include "rhi_cpu/translate/kernel_names.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
-#include "rhi_cpu/translate/supported.hpp"
 
 namespace tandem::cpu {
 

@@ -38,8 +38,6 @@ const std::vector<KnownCircle> known_circles_of_nouns = {
      "a ray that meets nothing is traced once more, by the same search"},
     {{"rhi_vulkan/compute_pipeline", "rhi_vulkan/pipeline_layout", "rhi_vulkan/ray_tracing_pipeline"},
      "the layout of a pipeline handle is found by the pipeline's kind"},
-    {{"tools/baseline", "tools/report/baseline_report", "tools/report/diff_report"},
-     "commands and their reports are being taken apart"},
 };
 
 /// What each folder at the top may include besides itself.

@@ -36,7 +36,7 @@ void print_line(const SuiteResult& result) {
       result.failed() ? std::string()
                       : fmt::format("{:.4f} % bit-equal  ", 100 * json.at("report").at("bit_equal").get<double>());
   fmt::print("{:<52}{}{}{}\n", json.at("name").get<std::string>(), share, json.at("state").get<std::string>(),
-             result.taken_over ? " (reused)" : "");
+             result.reused ? " (reused)" : "");
   for (const std::string reason : json.at("reasons")) fmt::print("{:<52}{}\n", "", reason);
   std::fflush(stdout);
 }
@@ -69,9 +69,9 @@ int run_suite(const Options& options) {
     print_line(results.back());
   }
   const nlohmann::ordered_json totals = to_json(results);
-  const auto taken_over = std::ranges::count_if(results, [](const SuiteResult& each) { return each.taken_over; });
+  const auto reused = std::ranges::count_if(results, [](const SuiteResult& each) { return each.reused; });
   fmt::print("{} comparisons: {} agree, {} differ, {} failed; {} were reused from an earlier run\n", results.size(),
-             totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>(), taken_over);
+             totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
   write_or_rescue(files);
   return totals.at("verdict") == "agree" ? exit_code::success : exit_code::differ;
 }

@@ -72,6 +72,7 @@ nlohmann::ordered_json to_json(const BenchReport& report) {
     entry["speed_ratio"] = spread_json(speed_ratio(report.series.front(), series));
     json["devices"].push_back(std::move(entry));
   }
+  json["format"] = json_format;
   json["version"] = TANDEM_VERSION;
   return json;
 }

@@ -85,6 +85,7 @@ std::string table(const compare::Comparison& comparison) {
 nlohmann::ordered_json to_json(const compare::Comparison& comparison) {
   const compare::Metrics& metrics = comparison.metrics;
   nlohmann::ordered_json json;
+  json["format"] = json_format;
   json["verdict"] = compare::name(comparison.verdict);
   json["tier"] = compare::name(comparison.verdict.tier);
   json["reasons"] = comparison.verdict.reasons;

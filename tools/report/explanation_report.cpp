@@ -154,6 +154,7 @@ nlohmann::ordered_json to_json(const compare::Explanation& explanation) {
                       {"relative", explanation.observed.relative_difference}};
   json["events"] = events_json(explanation.events, explanation.names);
   if (explanation.probing) json["probes"] = to_json(*explanation.probing);
+  json["format"] = json_format;
   json["version"] = TANDEM_VERSION;
   return json;
 }

@@ -172,6 +172,7 @@ nlohmann::ordered_json to_json(const MatrixReport& report) {
         {{"sides", sides}, {"pixels", split.pixels}, {"first", {split.first.x, split.first.y}}});
   }
   json["settings"] = settings_json(report.job, first.camera, first.background);
+  json["format"] = json_format;
   json["version"] = TANDEM_VERSION;
   return json;
 }

@@ -90,6 +90,7 @@ nlohmann::ordered_json to_json(const std::vector<GalleryResult>& results) {
   nlohmann::ordered_json json;
   const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.comparison.verdict.agree; });
   json["verdict"] = agree ? "agree" : "differ";
+  json["format"] = json_format;
   json["scenes"] = nlohmann::ordered_json::array();
   for (const auto& [scene, comparison] : results) {
     nlohmann::ordered_json entry = {{"name", scene.name}, {"title", scene.title}};

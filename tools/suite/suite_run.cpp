@@ -90,7 +90,7 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, compare::Comparison& compar
   const Json key = key_of(cell, job, devices, options.thresholds, program_);
   if (!fresh_)
     if (std::optional<Json> earlier = read_result(folder_, cell_path(cell, ".json"), key))
-      return {.json = std::move(*earlier), .taken_over = true};
+      return {.json = std::move(*earlier), .reused = true};
   compare::Session session = prepare(std::move(devices), std::move(job), options);
   comparison = compare_devices(session, progress_bars());
   const Json report = to_json(comparison);
@@ -128,7 +128,7 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
   } catch (const std::exception& error) {
     fail(error.what());
   }
-  if (result.taken_over) return result;
+  if (result.reused) return result;
 
   Json json = {{"name", cell.name},         {"scene", cell.scene},
                {"a", cell.comparison.a},    {"b", cell.comparison.b},
@@ -161,12 +161,13 @@ nlohmann::ordered_json to_json(const std::vector<SuiteResult>& results) {
                {"agree", agree},
                {"differ", results.size() - agree - failed},
                {"failed", failed},
+               {"format", json_format},
                {"version", TANDEM_VERSION},
                {"cells", Json::array()}};
   for (const SuiteResult& result : results) {
     Json cell = result.json;
     cell.erase("key");
-    cell["taken_over"] = result.taken_over;
+    cell["reused"] = result.reused;
     json["cells"].push_back(std::move(cell));
   }
   return json;

@@ -21,7 +21,7 @@ namespace tandem::tools {
 /// key (of all that the result depends on).
 struct SuiteResult {
   nlohmann::ordered_json json;
-  bool taken_over = false;  ///< from an earlier run
+  bool reused = false;  ///< from an earlier run
 
   bool agrees() const { return json.at("state") == "agree"; }
   bool failed() const { return json.at("state") == "failed"; }

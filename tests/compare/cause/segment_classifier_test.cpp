@@ -69,7 +69,7 @@ TEST_CASE("a ray along a shared edge is a tie when the arbiter calls it one") {
   CHECK(says(tie, "share an edge"));
   const Divergence wrong = resolved_by_arbiter(square(), a, b, Ruling::b_right).divergences[0];
   CHECK(wrong.difference_class == DifferenceClass::mismatch);
-  CHECK(says(wrong, "exactly it is triangle 1"));
+  CHECK(says(wrong, "the exact answer is triangle 1"));
 }
 
 TEST_CASE("a ray that passes the border of what it meets on one device is a tie at an edge") {

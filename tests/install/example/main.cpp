@@ -1,10 +1,11 @@
 // Renders a scene on two devices and says whether they agree, and if not why: `tandem diff --classify` in a few lines.
-// Usage: example SCENE [DEVICE_A [DEVICE_B]]
+// It writes the first picture too. Usage: example SCENE IMAGE [DEVICE_A [DEVICE_B]]
 
 #include <compare/session/comparison.hpp>
 #include <cstdio>
 #include <devices/devices.hpp>
 #include <exception>
+#include <pathtracer/image/image_io.hpp>
 #include <pathtracer/load/scene_loader.hpp>
 #include <string>
 #include <utility>
@@ -12,13 +13,13 @@
 using namespace tandem;
 
 int main(int argc, char** argv) {
-  if (argc < 2) {
-    std::fprintf(stderr, "usage: example SCENE [DEVICE_A [DEVICE_B]]\n");
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: example SCENE IMAGE [DEVICE_A [DEVICE_B]]\n");
     return 2;
   }
   try {
-    const compare::ComparedDevices devices{.a = create_device({.name = argc > 2 ? argv[2] : "cpu"}),
-                                           .b = create_device({.name = argc > 3 ? argv[3] : "cpu-exact"}),
+    const compare::ComparedDevices devices{.a = create_device({.name = argc > 3 ? argv[3] : "cpu"}),
+                                           .b = create_device({.name = argc > 4 ? argv[4] : "cpu-exact"}),
                                            .arbiter = create_device({.name = "cpu-exact"})};
     compare::Job job{.scene = pathtracer::load_scene(argv[1]), .settings = {.width = 64, .height = 64}, .samples = 4};
     const compare::Comparison found =
@@ -30,6 +31,7 @@ int main(int argc, char** argv) {
     for (const compare::ClassifiedPath& path : found.classification->paths)
       for (const compare::Divergence& divergence : path.divergences)
         std::printf("  pixel %u,%u: %s\n", path.path.pixel.x, path.path.pixel.y, divergence.sentence.c_str());
+    pathtracer::write_image(argv[2], found.a.image, found.a.metadata);
     return found.verdict.agree && found.metrics.mean_a > 0.0 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "example: %s\n", error.what());

@@ -138,8 +138,8 @@ TANDEM_DEVICE_TEST("A picture that is not the sum of its paths is a mismatch by 
   Comparison found(device, scene, device, scene);
   Image wrong = found.b.image();
   wrong.pixels[100] *= 1.5f;
-  const Classification result =
-      classify({found.a.scene(), found.b.scene(), found.arbiter, scene}, found.a.image(), wrong, samples, {.survey_pixels = 0});
+  const Classification result = classify({found.a.scene(), found.b.scene(), found.arbiter, scene}, found.a.image(),
+                                         wrong, samples, {.survey_pixels = 0});
   CHECK(result.differing_pixels == 1);
   CHECK(result.mismatches() == 1);
   REQUIRE(result.pixels.size() == 1);
