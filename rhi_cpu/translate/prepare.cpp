@@ -9,6 +9,7 @@
 #include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 

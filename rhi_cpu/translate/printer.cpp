@@ -6,6 +6,7 @@
 
 #include "rhi_cpu/translate/identifiers.hpp"
 #include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {

@@ -10,6 +10,7 @@
 #include "rhi/error.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
+#include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
@@ -220,10 +221,6 @@ class Checker {
 };
 
 }  // namespace
-
-void refuse(const std::string& label, const std::string& what) {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label, what + " is not supported by the CPU device");
-}
 
 bool is_supported(spv::Op op) { return contains(structural_instructions, op) || Printer::prints(op); }
 

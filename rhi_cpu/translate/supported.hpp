@@ -8,9 +8,6 @@
 
 namespace tandem::cpu {
 
-/// Throws rhi::Error(unsupported): "`label`: `what` is not supported by the CPU device".
-[[noreturn]] void refuse(const std::string& label, const std::string& what);
-
 /// Whether the translator handles an instruction; some uses of it may be refused all the same.
 bool is_supported(spv::Op op);
 

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "base/json_value.hpp"
+#include "tools/report/device_json.hpp"
 #include "tools/report/job_report.hpp"
 
 namespace tandem::tools {
