@@ -90,7 +90,7 @@ TEST_CASE("without the library for pictures, rendering one is refused at once an
                                   "/nowhere/codec.so: "));
   CHECK(std::count(render.errors.begin(), render.errors.end(), '\n') == 1);
   CHECK(folder.names().empty());
-  CHECK(run_tandem({"generate", "--triangles", "2", "-o", (folder.path() / "a.obj").string()}).exit_code == 0);
+  CHECK(run_tandem({"generate", "--triangles", "1000", "-o", (folder.path() / "a.obj").string()}).exit_code == 0);
 }
 
 TEST_CASE("a library that is no codec is refused" * doctest::skip(!TANDEM_LOADS_IMAGE_LIBRARY)) {
