@@ -51,18 +51,30 @@ set(sanitizers)
 if(SANITIZE)
   set(sanitizers "-DCMAKE_CXX_FLAGS=-fsanitize=address,undefined -Wl,--disable-new-dtags")  # as cmake/TandemToolchain.cmake
 endif()
-run("${CMAKE_COMMAND}" -S "${EXAMPLE}" -B "${WORK_FOLDER}/example" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${moved}"
+run("${CMAKE_COMMAND}" -S "${EXAMPLES}" -B "${WORK_FOLDER}/examples" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${moved}"
     "-DCMAKE_CXX_COMPILER=${COMPILER}" "-DCMAKE_BUILD_TYPE=${CONFIGURATION}" ${sanitizers})
-run("${CMAKE_COMMAND}" --build "${WORK_FOLDER}/example" --config "${CONFIGURATION}")
-find_program(example NAMES example PATHS "${WORK_FOLDER}/example" "${WORK_FOLDER}/example/${CONFIGURATION}" NO_DEFAULT_PATH REQUIRED)
-run("${example}" "${scenes}/cornell_box.obj" "${WORK_FOLDER}/example.exr")
-if(NOT output MATCHES "agree" OR NOT EXISTS "${WORK_FOLDER}/example.exr")
-  message(FATAL_ERROR "the example printed: ${output}")
+run("${CMAKE_COMMAND}" --build "${WORK_FOLDER}/examples" --config "${CONFIGURATION}")
+function(find_example name)
+  find_program(example_${name} NAMES ${name} PATHS "${WORK_FOLDER}/examples" "${WORK_FOLDER}/examples/${CONFIGURATION}"
+               NO_DEFAULT_PATH REQUIRED)
+endfunction()
+find_example(compare_devices)
+run("${example_compare_devices}" "${scenes}/cornell_box.obj" "${WORK_FOLDER}/example.exr")
+if(NOT output MATCHES "cpu against cpu-exact: agree" OR NOT EXISTS "${WORK_FOLDER}/example.exr")
+  message(FATAL_ERROR "compare_devices printed: ${output}")
 endif()
+# The triangle is above the points i / 16 at z = 0.25 up to x = 0.75, where the ray meets its edge.
+find_example(your_shader)
+foreach(device cpu cpu-exact)
+  run("${example_your_shader}" "${EXAMPLES}/your_shader/shadow.comp" ${device})
+  if(NOT output MATCHES "^111111111111[01]000\n$")
+    message(FATAL_ERROR "your_shader on ${device} printed: ${output}")
+  endif()
+endforeach()
 
 # A component that does not exist is an error that names it.
 execute_process(
-  COMMAND "${CMAKE_COMMAND}" -S "${EXAMPLE}" -B "${WORK_FOLDER}/no_component" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${moved}"
+  COMMAND "${CMAKE_COMMAND}" -S "${EXAMPLES}" -B "${WORK_FOLDER}/no_component" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${moved}"
           "-DCMAKE_CXX_COMPILER=${COMPILER}" -DEXTRA_COMPONENT=teapot
   RESULT_VARIABLE result
   OUTPUT_VARIABLE output

@@ -1,5 +1,5 @@
 // Renders a scene on two devices and says whether they agree, and if not why: `tandem diff --classify` in a few lines.
-// It writes the first picture too. Usage: example SCENE IMAGE [DEVICE_A [DEVICE_B]]
+// It writes the first picture too. Usage: compare_devices SCENE IMAGE [DEVICE_A [DEVICE_B]]
 
 #include <compare/session/comparison.hpp>
 #include <cstdio>
@@ -14,7 +14,7 @@ using namespace tandem;
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: example SCENE IMAGE [DEVICE_A [DEVICE_B]]\n");
+    std::fprintf(stderr, "usage: compare_devices SCENE IMAGE [DEVICE_A [DEVICE_B]]\n");
     return 2;
   }
   try {
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     pathtracer::write_image(argv[2], found.a.image, found.a.metadata);
     return found.verdict.agree && found.metrics.mean_a > 0.0 ? 0 : 1;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "example: %s\n", error.what());
+    std::fprintf(stderr, "compare_devices: %s\n", error.what());
     return 2;
   }
 }
