@@ -25,7 +25,7 @@ int main(int argc, char** argv) try {
   const auto vertices = rhi::create_filled(*device, corners, BufferUsage::acceleration_structure_input, "corners");
   const rhi::TriangleGeometry triangle{.vertices = {vertices}, .vertex_count = 3, .triangle_count = 1};
   const auto blas = rhi::build_bottom_level(*device, {.geometries = {triangle}, .label = "triangle"});
-  const std::array instances = {rhi::make_instance(blas)};
+  const std::array instances = {rhi::make_instance(*blas)};
   const auto instance_buffer =
       rhi::create_filled(*device, instances, BufferUsage::acceleration_structure_input, "instances");
   const auto tlas = rhi::build_top_level(*device, {.instances = {instance_buffer}, .instance_count = 1});

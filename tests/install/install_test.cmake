@@ -63,7 +63,7 @@ run("${example_compare_devices}" "${scenes}/cornell_box.obj" "${WORK_FOLDER}/exa
 if(NOT output MATCHES "cpu against cpu-exact: agree" OR NOT EXISTS "${WORK_FOLDER}/example.exr")
   message(FATAL_ERROR "compare_devices printed: ${output}")
 endif()
-# The triangle is above the points i / 16 at z = 0.25 up to x = 0.75, where the ray meets its edge.
+# The triangle is above the points (i + 0.5) / 16 at z = 0.25 up to x = 0.75: the first twelve.
 find_example(your_shader)
 foreach(device cpu cpu-exact)
   run("${example_your_shader}" "${EXAMPLES}/your_shader/shadow.comp" ${device})
