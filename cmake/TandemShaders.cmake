@@ -147,5 +147,9 @@ std::span<const cpu::PrecompiledKernel> kernels() {
   target_link_libraries(tandem_${name}_kernels PRIVATE glm::glm)
   # Debug information changes no code, and lets a debugger step through the GLSL. Values of its variables are in a debug build only: for
   # a large shader they take the compiler as long as everything else.
-  set_source_files_properties(${kernel_sources} PROPERTIES COMPILE_OPTIONS "${TANDEM_KERNEL_OPTIONS};$<IF:$<CONFIG:Debug>,-g;-O0,-g1>")
+  target_compile_options(tandem_${name}_kernels PRIVATE ${TANDEM_KERNEL_OPTIONS} $<IF:$<CONFIG:Debug>,-g;-O0,-g1>)
+  list(LENGTH kernel_sources kernel_count)
+  if(kernel_count GREATER 5)
+    tandem_precompile_headers(tandem_${name}_kernels <rhi_cpu/kernel/kernel.hpp>)
+  endif()
 endfunction()

@@ -13,7 +13,8 @@ set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
 find_program(TANDEM_CCACHE ccache)
 if(TANDEM_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${TANDEM_CCACHE}")
+  # Without these two, ccache leaves alone what is compiled with a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${TANDEM_CCACHE}")
 endif()
 
 # Tandem's promise is results that agree to the last bit: no contraction into fma, no reassociation.
@@ -35,6 +36,30 @@ function(tandem_target target)
   if(TANDEM_WARNINGS_AS_ERRORS)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
+endfunction()
+
+# What most files of the project include: with tandem_precompile_headers, a third of the time to compile one is saved.
+set(TANDEM_COMMON_HEADERS
+    <algorithm> <array> <cmath> <cstddef> <cstdint> <cstring> <filesystem> <functional> <limits> <map> <memory> <optional>
+    <span> <string> <string_view> <utility> <vector> <fmt/format.h> <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp> <glm/vec4.hpp>)
+
+# tandem_precompile_headers(TARGET HEADER... | REUSE_FROM TARGET): target_precompile_headers, in a form that ccache can keep. Every
+# file still includes what it uses: with CMAKE_DISABLE_PRECOMPILE_HEADERS, as in the preset clang, it compiles without.
+function(tandem_precompile_headers target)
+  if(ARGV1 STREQUAL REUSE_FROM)
+    target_precompile_headers(${target} ${ARGN})
+  else()
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
+  if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
+    target_compile_options(
+      ${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess> "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>")
+  endif()
+endfunction()
+
+# tandem_optimize_little(TARGET): for what parses, prints and reports. The compiler takes half as long, and nobody notices.
+function(tandem_optimize_little target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # tandem_library(NAME SOURCES...): a static library tandem_NAME with the alias Tandem::NAME.
