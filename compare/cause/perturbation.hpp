@@ -17,7 +17,7 @@ namespace tandem::compare {
 inline constexpr std::size_t variation_count = 64;
 
 /// Events of kind segment with the state of `state`, moved by up to tolerated_ulp units in the last place
-/// (compare/geometry/rounding.hpp): origin, direction and scatterer position by those of their largest
+/// (compare/geometry/rounding.hpp): origin, direction and previous position by those of their largest
 /// component, the direction then of unit length again; throughput, radiance and densities each by their own, so that
 /// what is black stays black. Every second state is moved the other way than the one before it. The same for the same
 /// state.

@@ -219,8 +219,8 @@ void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list,
   const auto add_instance = [&](rhi::BottomLevelDesc desc, std::uint32_t kind) {
     bottom_levels_.push_back({device.create_bottom_level(desc), std::move(desc)});
     rhi::InstanceDesc& instance = instances.emplace_back(rhi::make_instance(*bottom_levels_.back().structure));
-    instance.custom_index = kind & 1;
-    instance.sbt_offset = kind & 1;
+    instance.custom_index = kind & 0xffffffu;  // fields of 24 bits
+    instance.sbt_offset = kind & 0xffffffu;
   };
   if (!scene.triangles.empty()) add_instance(describe_triangles(device, list, scene), triangle_instance);
   if (!scene.spheres.empty()) add_instance(describe_spheres(device, list, scene), sphere_instance);
@@ -242,19 +242,28 @@ void DeviceScene::record_build(rhi::CommandList& list) {
 
 std::vector<rhi::BindGroupEntry> DeviceScene::entries(const rhi::PipelineInterface& interface,
                                                       const rhi::BufferHandle& constants) const {
-  const rhi::BufferHandle buffers[] = {positions_,           normals_,  triangles_, materials_,        lights_,
-                                       texture_coordinates_, textures_, texels_,    primitive_lights_, spheres_,
-                                       environment_cells_,   media_,    constants};
-  std::vector<rhi::BindGroupEntry> entries;
-  for (const rhi::ShaderBinding& binding : interface.bindings) {
-    if (binding.set != 0) continue;
-    if (binding.binding == 0)
-      entries.push_back({.binding = 0, .resource = top_level_});
-    else
-      entries.push_back(
-          {.binding = binding.binding, .resource = rhi::BufferRange{std::span(buffers)[binding.binding - 1]}});
-  }
-  return entries;
+  const rhi::BindGroupEntry all[] = {
+      {.binding = binding::scene_tlas, .resource = top_level_},
+      {.binding = binding::positions, .resource = rhi::BufferRange{positions_}},
+      {.binding = binding::normals, .resource = rhi::BufferRange{normals_}},
+      {.binding = binding::triangles, .resource = rhi::BufferRange{triangles_}},
+      {.binding = binding::materials, .resource = rhi::BufferRange{materials_}},
+      {.binding = binding::lights, .resource = rhi::BufferRange{lights_}},
+      {.binding = binding::texture_coordinates, .resource = rhi::BufferRange{texture_coordinates_}},
+      {.binding = binding::textures, .resource = rhi::BufferRange{textures_}},
+      {.binding = binding::texels, .resource = rhi::BufferRange{texels_}},
+      {.binding = binding::primitive_lights, .resource = rhi::BufferRange{primitive_lights_}},
+      {.binding = binding::spheres, .resource = rhi::BufferRange{spheres_}},
+      {.binding = binding::environment_cells, .resource = rhi::BufferRange{environment_cells_}},
+      {.binding = binding::media, .resource = rhi::BufferRange{media_}},
+      {.binding = binding::render, .resource = rhi::BufferRange{constants}}};
+  std::vector<rhi::BindGroupEntry> used;
+  for (const rhi::BindGroupEntry& entry : all)
+    if (std::ranges::any_of(interface.bindings, [&](const rhi::ShaderBinding& declared) {
+          return declared.set == 0 && declared.binding == entry.binding;
+        }))
+      used.push_back(entry);
+  return used;
 }
 
 }  // namespace tandem::pathtracer

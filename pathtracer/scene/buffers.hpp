@@ -24,6 +24,24 @@ enum class MaterialModel : std::uint32_t {
   boundary = 10
 };
 
+/// Where set 0 of the shaders binds each buffer.
+namespace binding {
+inline constexpr std::uint32_t scene_tlas = 0;
+inline constexpr std::uint32_t positions = 1;
+inline constexpr std::uint32_t normals = 2;
+inline constexpr std::uint32_t triangles = 3;
+inline constexpr std::uint32_t materials = 4;
+inline constexpr std::uint32_t lights = 5;
+inline constexpr std::uint32_t texture_coordinates = 6;
+inline constexpr std::uint32_t textures = 7;
+inline constexpr std::uint32_t texels = 8;
+inline constexpr std::uint32_t primitive_lights = 9;
+inline constexpr std::uint32_t spheres = 10;
+inline constexpr std::uint32_t environment_cells = 11;
+inline constexpr std::uint32_t media = 12;
+inline constexpr std::uint32_t render = 13;  ///< RenderConstants
+}  // namespace binding
+
 inline constexpr std::uint32_t no_texture = 0xffffffffu;
 inline constexpr std::uint32_t no_medium = 0xffffffffu;
 inline constexpr std::uint32_t no_light = 0xffffffffu;

@@ -49,6 +49,28 @@ std::map<std::uint32_t, Element> storage_elements(const spirv_cross::Compiler& c
 
 }  // namespace
 
+TEST_CASE("The shaders bind each buffer of a scene where the host does") {
+  const std::map<std::string, std::uint32_t> expected = {{"scene_tlas", binding::scene_tlas},
+                                                         {"Positions", binding::positions},
+                                                         {"Normals", binding::normals},
+                                                         {"Triangles", binding::triangles},
+                                                         {"Materials", binding::materials},
+                                                         {"Lights", binding::lights},
+                                                         {"TextureCoordinates", binding::texture_coordinates},
+                                                         {"Textures", binding::textures},
+                                                         {"Texels", binding::texels},
+                                                         {"PrimitiveLights", binding::primitive_lights},
+                                                         {"Spheres", binding::spheres},
+                                                         {"EnvironmentCells", binding::environment_cells},
+                                                         {"Media", binding::media},
+                                                         {"Render", binding::render}};
+  std::map<std::string, std::uint32_t> declared;
+  const auto reflection = tandem::rhi::reflect(tandem::shaders::path_trace(), "path_trace.comp");
+  for (const tandem::rhi::ShaderBinding& found : reflection.bindings)
+    if (found.set == 0) declared[found.name] = found.binding;
+  CHECK(declared == expected);
+}
+
 TEST_CASE("The push constants of the shader are DispatchConstants") {
   const spirv_cross::Compiler compiler = reflect_shader();
   const auto blocks = compiler.get_shader_resources().push_constant_buffers;
@@ -103,7 +125,7 @@ TEST_CASE("The render constants of the shader are RenderConstants") {
                             {"reserved_1", offsetof(RenderConstants, reserved_1)}};
   bool found = false;
   for (const spirv_cross::Resource& resource : compiler.get_shader_resources().storage_buffers) {
-    if (compiler.get_decoration(resource.id, spv::DecorationBinding) != 13) continue;
+    if (compiler.get_decoration(resource.id, spv::DecorationBinding) != binding::render) continue;
     const spirv_cross::SPIRType& block = compiler.get_type(resource.base_type_id);
     CHECK(offsets_of(compiler, compiler.get_type(block.member_types[0])) == expected);
     found = true;
@@ -113,88 +135,92 @@ TEST_CASE("The render constants of the shader are RenderConstants") {
 
 TEST_CASE("The structures of the shader's buffers are those of the host") {
   const std::map<std::uint32_t, Element> elements = storage_elements(reflect_shader());
-  for (const std::uint32_t binding : {1u, 2u, 6u}) CHECK(elements.at(binding).stride == sizeof(float));
-  for (const std::uint32_t binding : {8u, 9u}) CHECK(elements.at(binding).stride == sizeof(std::uint32_t));
-  CHECK(elements.at(3).stride == sizeof(GpuTriangle));
-  CHECK(elements.at(3).offsets ==
+  for (const std::uint32_t floats : {binding::positions, binding::normals, binding::texture_coordinates})
+    CHECK(elements.at(floats).stride == sizeof(float));
+  for (const std::uint32_t words : {binding::texels, binding::primitive_lights})
+    CHECK(elements.at(words).stride == sizeof(std::uint32_t));
+  CHECK(elements.at(binding::triangles).stride == sizeof(GpuTriangle));
+  CHECK(elements.at(binding::triangles).offsets ==
         Offsets{{"vertices", offsetof(GpuTriangle, vertices)}, {"material", offsetof(GpuTriangle, material)}});
-  CHECK(elements.at(4).stride == sizeof(GpuMaterial));
-  CHECK(elements.at(4).offsets == Offsets{{"base_color", offsetof(GpuMaterial, base_color)},
-                                          {"model", offsetof(GpuMaterial, model)},
-                                          {"emission", offsetof(GpuMaterial, emission)},
-                                          {"ior", offsetof(GpuMaterial, ior)},
-                                          {"reflectance", offsetof(GpuMaterial, reflectance)},
-                                          {"opacity", offsetof(GpuMaterial, opacity)},
-                                          {"transmittance", offsetof(GpuMaterial, transmittance)},
-                                          {"alpha_texture", offsetof(GpuMaterial, alpha_texture)},
-                                          {"eta", offsetof(GpuMaterial, eta)},
-                                          {"roughness", offsetof(GpuMaterial, roughness)},
-                                          {"absorption", offsetof(GpuMaterial, absorption)},
-                                          {"metallic", offsetof(GpuMaterial, metallic)},
-                                          {"exponent", offsetof(GpuMaterial, exponent)},
-                                          {"transmission", offsetof(GpuMaterial, transmission)},
-                                          {"specular", offsetof(GpuMaterial, specular)},
-                                          {"normal_scale", offsetof(GpuMaterial, normal_scale)},
-                                          {"base_color_texture", offsetof(GpuMaterial, base_color_texture)},
-                                          {"emission_texture", offsetof(GpuMaterial, emission_texture)},
-                                          {"reflectance_texture", offsetof(GpuMaterial, reflectance_texture)},
-                                          {"roughness_texture", offsetof(GpuMaterial, roughness_texture)},
-                                          {"metallic_texture", offsetof(GpuMaterial, metallic_texture)},
-                                          {"transmission_texture", offsetof(GpuMaterial, transmission_texture)},
-                                          {"transmittance_texture", offsetof(GpuMaterial, transmittance_texture)},
-                                          {"specular_texture", offsetof(GpuMaterial, specular_texture)},
-                                          {"exponent_texture", offsetof(GpuMaterial, exponent_texture)},
-                                          {"normal_texture", offsetof(GpuMaterial, normal_texture)},
-                                          {"bump_texture", offsetof(GpuMaterial, bump_texture)},
-                                          {"medium", offsetof(GpuMaterial, medium)},
-                                          {"alpha_cutoff", offsetof(GpuMaterial, alpha_cutoff)},
-                                          {"reserved_0", offsetof(GpuMaterial, reserved) + 0},
-                                          {"reserved_1", offsetof(GpuMaterial, reserved) + 4},
-                                          {"reserved_2", offsetof(GpuMaterial, reserved) + 8}});
-  CHECK(elements.at(5).stride == sizeof(GpuLight));
-  CHECK(elements.at(5).offsets == Offsets{{"primitive", offsetof(GpuLight, primitive)},
-                                          {"alias", offsetof(GpuLight, alias)},
-                                          {"threshold", offsetof(GpuLight, threshold)},
-                                          {"area_density", offsetof(GpuLight, area_density)},
-                                          {"kind", offsetof(GpuLight, kind)},
-                                          {"probability", offsetof(GpuLight, probability)},
-                                          {"cosine_inner", offsetof(GpuLight, cosine_inner)},
-                                          {"cosine_outer", offsetof(GpuLight, cosine_outer)},
-                                          {"position", offsetof(GpuLight, position)},
-                                          {"reserved_0", offsetof(GpuLight, reserved_0)},
-                                          {"direction", offsetof(GpuLight, direction)},
-                                          {"reserved_1", offsetof(GpuLight, reserved_1)},
-                                          {"radiance", offsetof(GpuLight, radiance)},
-                                          {"reserved_2", offsetof(GpuLight, reserved_2)}});
-  CHECK(elements.at(7).stride == sizeof(GpuTexture));
-  CHECK(elements.at(7).offsets == Offsets{{"kind", offsetof(GpuTexture, kind)},
-                                          {"format", offsetof(GpuTexture, format)},
-                                          {"first_word", offsetof(GpuTexture, first_word)},
-                                          {"address", offsetof(GpuTexture, address)},
-                                          {"width", offsetof(GpuTexture, width)},
-                                          {"height", offsetof(GpuTexture, height)},
-                                          {"filter_mode", offsetof(GpuTexture, filter)},
-                                          {"channel", offsetof(GpuTexture, channel)},
-                                          {"u_row", offsetof(GpuTexture, u_row)},
-                                          {"scale", offsetof(GpuTexture, scale)},
-                                          {"v_row", offsetof(GpuTexture, v_row)},
-                                          {"reserved", offsetof(GpuTexture, reserved)},
-                                          {"color_a", offsetof(GpuTexture, color_a)},
-                                          {"alpha_a", offsetof(GpuTexture, alpha_a)},
-                                          {"color_b", offsetof(GpuTexture, color_b)},
-                                          {"alpha_b", offsetof(GpuTexture, alpha_b)}});
-  CHECK(elements.at(10).stride == sizeof(GpuSphere));
-  CHECK(elements.at(10).offsets == Offsets{{"centre", offsetof(GpuSphere, centre)},
-                                           {"radius", offsetof(GpuSphere, radius)},
-                                           {"motion", offsetof(GpuSphere, motion)},
-                                           {"material", offsetof(GpuSphere, material)}});
-  CHECK(elements.at(11).stride == sizeof(GpuEnvironmentCell));
-  CHECK(elements.at(11).offsets == Offsets{{"threshold", offsetof(GpuEnvironmentCell, threshold)},
-                                           {"alias", offsetof(GpuEnvironmentCell, alias)},
-                                           {"density", offsetof(GpuEnvironmentCell, density)}});
-  CHECK(elements.at(12).stride == sizeof(GpuMedium));
-  CHECK(elements.at(12).offsets == Offsets{{"absorption", offsetof(GpuMedium, absorption)},
-                                           {"anisotropy", offsetof(GpuMedium, anisotropy)},
-                                           {"scattering", offsetof(GpuMedium, scattering)},
-                                           {"reserved", offsetof(GpuMedium, reserved)}});
+  CHECK(elements.at(binding::materials).stride == sizeof(GpuMaterial));
+  CHECK(elements.at(binding::materials).offsets ==
+        Offsets{{"base_color", offsetof(GpuMaterial, base_color)},
+                {"model", offsetof(GpuMaterial, model)},
+                {"emission", offsetof(GpuMaterial, emission)},
+                {"ior", offsetof(GpuMaterial, ior)},
+                {"reflectance", offsetof(GpuMaterial, reflectance)},
+                {"opacity", offsetof(GpuMaterial, opacity)},
+                {"transmittance", offsetof(GpuMaterial, transmittance)},
+                {"alpha_texture", offsetof(GpuMaterial, alpha_texture)},
+                {"eta", offsetof(GpuMaterial, eta)},
+                {"roughness", offsetof(GpuMaterial, roughness)},
+                {"absorption", offsetof(GpuMaterial, absorption)},
+                {"metallic", offsetof(GpuMaterial, metallic)},
+                {"exponent", offsetof(GpuMaterial, exponent)},
+                {"transmission", offsetof(GpuMaterial, transmission)},
+                {"specular", offsetof(GpuMaterial, specular)},
+                {"normal_scale", offsetof(GpuMaterial, normal_scale)},
+                {"base_color_texture", offsetof(GpuMaterial, base_color_texture)},
+                {"emission_texture", offsetof(GpuMaterial, emission_texture)},
+                {"reflectance_texture", offsetof(GpuMaterial, reflectance_texture)},
+                {"roughness_texture", offsetof(GpuMaterial, roughness_texture)},
+                {"metallic_texture", offsetof(GpuMaterial, metallic_texture)},
+                {"transmission_texture", offsetof(GpuMaterial, transmission_texture)},
+                {"transmittance_texture", offsetof(GpuMaterial, transmittance_texture)},
+                {"specular_texture", offsetof(GpuMaterial, specular_texture)},
+                {"exponent_texture", offsetof(GpuMaterial, exponent_texture)},
+                {"normal_texture", offsetof(GpuMaterial, normal_texture)},
+                {"bump_texture", offsetof(GpuMaterial, bump_texture)},
+                {"medium", offsetof(GpuMaterial, medium)},
+                {"alpha_cutoff", offsetof(GpuMaterial, alpha_cutoff)},
+                {"reserved_0", offsetof(GpuMaterial, reserved) + 0},
+                {"reserved_1", offsetof(GpuMaterial, reserved) + 4},
+                {"reserved_2", offsetof(GpuMaterial, reserved) + 8}});
+  CHECK(elements.at(binding::lights).stride == sizeof(GpuLight));
+  CHECK(elements.at(binding::lights).offsets == Offsets{{"primitive", offsetof(GpuLight, primitive)},
+                                                        {"alias", offsetof(GpuLight, alias)},
+                                                        {"threshold", offsetof(GpuLight, threshold)},
+                                                        {"area_density", offsetof(GpuLight, area_density)},
+                                                        {"kind", offsetof(GpuLight, kind)},
+                                                        {"probability", offsetof(GpuLight, probability)},
+                                                        {"cosine_inner", offsetof(GpuLight, cosine_inner)},
+                                                        {"cosine_outer", offsetof(GpuLight, cosine_outer)},
+                                                        {"position", offsetof(GpuLight, position)},
+                                                        {"reserved_0", offsetof(GpuLight, reserved_0)},
+                                                        {"direction", offsetof(GpuLight, direction)},
+                                                        {"reserved_1", offsetof(GpuLight, reserved_1)},
+                                                        {"radiance", offsetof(GpuLight, radiance)},
+                                                        {"reserved_2", offsetof(GpuLight, reserved_2)}});
+  CHECK(elements.at(binding::textures).stride == sizeof(GpuTexture));
+  CHECK(elements.at(binding::textures).offsets == Offsets{{"kind", offsetof(GpuTexture, kind)},
+                                                          {"format", offsetof(GpuTexture, format)},
+                                                          {"first_word", offsetof(GpuTexture, first_word)},
+                                                          {"address", offsetof(GpuTexture, address)},
+                                                          {"width", offsetof(GpuTexture, width)},
+                                                          {"height", offsetof(GpuTexture, height)},
+                                                          {"filter_mode", offsetof(GpuTexture, filter)},
+                                                          {"channel", offsetof(GpuTexture, channel)},
+                                                          {"u_row", offsetof(GpuTexture, u_row)},
+                                                          {"scale", offsetof(GpuTexture, scale)},
+                                                          {"v_row", offsetof(GpuTexture, v_row)},
+                                                          {"reserved", offsetof(GpuTexture, reserved)},
+                                                          {"color_a", offsetof(GpuTexture, color_a)},
+                                                          {"alpha_a", offsetof(GpuTexture, alpha_a)},
+                                                          {"color_b", offsetof(GpuTexture, color_b)},
+                                                          {"alpha_b", offsetof(GpuTexture, alpha_b)}});
+  CHECK(elements.at(binding::spheres).stride == sizeof(GpuSphere));
+  CHECK(elements.at(binding::spheres).offsets == Offsets{{"centre", offsetof(GpuSphere, centre)},
+                                                         {"radius", offsetof(GpuSphere, radius)},
+                                                         {"motion", offsetof(GpuSphere, motion)},
+                                                         {"material", offsetof(GpuSphere, material)}});
+  CHECK(elements.at(binding::environment_cells).stride == sizeof(GpuEnvironmentCell));
+  CHECK(elements.at(binding::environment_cells).offsets ==
+        Offsets{{"threshold", offsetof(GpuEnvironmentCell, threshold)},
+                {"alias", offsetof(GpuEnvironmentCell, alias)},
+                {"density", offsetof(GpuEnvironmentCell, density)}});
+  CHECK(elements.at(binding::media).stride == sizeof(GpuMedium));
+  CHECK(elements.at(binding::media).offsets == Offsets{{"absorption", offsetof(GpuMedium, absorption)},
+                                                       {"anisotropy", offsetof(GpuMedium, anisotropy)},
+                                                       {"scattering", offsetof(GpuMedium, scattering)},
+                                                       {"reserved", offsetof(GpuMedium, reserved)}});
 }
