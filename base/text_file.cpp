@@ -31,7 +31,7 @@ std::string read_text(const std::filesystem::path& path) {
     file.read(chunk.data(), static_cast<std::streamsize>(chunk.size()));
     const std::string_view read(chunk.data(), static_cast<std::size_t>(file.gcount()));
     // At once, so that a large binary file or a device such as /dev/zero is not read to its end.
-    if (read.find('\0') != std::string_view::npos) throw Error(fmt::format("'{}' is no text file", path.string()));
+    if (read.find('\0') != std::string_view::npos) throw Error(fmt::format("'{}' is not a text file", path.string()));
     text += read;
   } while (file);
   if (file.bad()) throw Error(fmt::format("cannot read '{}': reading failed", path.string()));

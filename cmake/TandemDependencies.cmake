@@ -16,7 +16,7 @@ if(TANDEM_IMAGE_LIBRARY STREQUAL "OpenImageIO")
   get_target_property(oiio_include_directories OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
   list(FILTER oiio_include_directories EXCLUDE REGEX "opencv4$")
   set_target_properties(OpenImageIO::OpenImageIO PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${oiio_include_directories}")
-  set(TANDEM_IMAGE_TARGETS OpenImageIO::OpenImageIO)
+  set(TANDEM_IMAGE_TARGETS)  # only the module links it
 elseif(TANDEM_IMAGE_LIBRARY STREQUAL "tinyexr")
   find_package(tinyexr REQUIRED CONFIG)
   find_package(PNG REQUIRED)

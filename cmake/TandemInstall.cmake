@@ -7,10 +7,13 @@ set(TANDEM_INSTALL_HEADERS "${CMAKE_INSTALL_INCLUDEDIR}/tandem")
 set(TANDEM_INSTALL_PACKAGE "${CMAKE_INSTALL_LIBDIR}/cmake/Tandem")
 set(TANDEM_INSTALL_DATA "${CMAKE_INSTALL_DATADIR}/tandem")
 
-# The program links Tandem's libraries statically; the path is for shared builds of what a user puts beside it.
+# The program links Tandem's libraries statically, and opens the module for pictures, which lies below them.
 file(RELATIVE_PATH tandem_binaries_to_libraries "${CMAKE_INSTALL_FULL_BINDIR}" "${CMAKE_INSTALL_FULL_LIBDIR}")
-set_target_properties(tandem PROPERTIES INSTALL_RPATH "$ORIGIN/${tandem_binaries_to_libraries}")
+set_target_properties(tandem PROPERTIES INSTALL_RPATH "$ORIGIN/${tandem_binaries_to_libraries}/tandem")
 install(TARGETS tandem RUNTIME)
+if(TARGET tandem_image_openimageio)
+  install(TARGETS tandem_image_openimageio LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/tandem")
+endif()
 
 # Every library of the project, except those that only its tests use.
 get_property(tandem_libraries GLOBAL PROPERTY TANDEM_LIBRARIES)
@@ -45,7 +48,7 @@ install(DIRECTORY "${PROJECT_SOURCE_DIR}/shaders" DESTINATION "${TANDEM_INSTALL_
         FILES_MATCHING PATTERN "*.glsl" PATTERN "*.comp" PATTERN "*.rgen" PATTERN "*.rmiss" PATTERN "*.rchit" PATTERN "*.rahit" PATTERN "*.rint")
 # Whole, but for what makes scenes and what needs files that do not ship; schemas lie where the scenes look for them.
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/scenes" DESTINATION "${TANDEM_INSTALL_DATA}"
-        PATTERN generators EXCLUDE PATTERN thesis EXCLUDE)
+        PATTERN generators EXCLUDE PATTERN thesis EXCLUDE PATTERN "*.py" EXCLUDE)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs/schema" DESTINATION "${TANDEM_INSTALL_DATA}/docs")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 

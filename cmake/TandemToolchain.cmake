@@ -24,7 +24,9 @@ if(TANDEM_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   # What the sanitizers insert makes g++ see uninitialised members of variants where there are none.
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
-  add_link_options(-fsanitize=address,undefined)
+  # AddressSanitizer opens libraries in the program's stead, so of the program's paths only those that hold for all it loads
+  # (DT_RPATH instead of DT_RUNPATH) are searched for the module for pictures.
+  add_link_options(-fsanitize=address,undefined LINKER:--disable-new-dtags)
 endif()
 
 # tandem_target(NAME): what every target of the project has in common. Headers are included as "folder/file.hpp".

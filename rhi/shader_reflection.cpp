@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -37,6 +38,18 @@ ShaderStage stage_of(spv::ExecutionModel model, std::string_view label) {
                   "the SPIR-V entry point has execution model " + std::to_string(model) +
                       ", which is neither compute nor a ray tracing stage");
   }
+}
+
+/// SPIR-V's own names, in the order of its numbers.
+std::string image_format_name(spv::ImageFormat format) {
+  constexpr const char* names[] = {
+      "Unknown",  "Rgba32f",  "Rgba16f", "R32f",     "Rgba8",    "Rgba8Snorm", "Rg32f", "Rg16f",       "R11fG11fB10f",
+      "R16f",     "Rgba16",   "Rgb10A2", "Rg16",     "Rg8",      "R16",        "R8",    "Rgba16Snorm", "Rg16Snorm",
+      "Rg8Snorm", "R16Snorm", "R8Snorm", "Rgba32i",  "Rgba16i",  "Rgba8i",     "R32i",  "Rg32i",       "Rg16i",
+      "Rg8i",     "R16i",     "R8i",     "Rgba32ui", "Rgba16ui", "Rgba8ui",    "R32ui", "Rgb10a2ui",   "Rg32ui",
+      "Rg16ui",   "Rg8ui",    "R16ui",   "R8ui",     "R64ui",    "R64i"};
+  static_assert(std::size(names) == spv::ImageFormatR64i + 1);
+  return format < std::size(names) ? names[format] : std::to_string(format);
 }
 
 TextureDimension dimension_of(const spirv_cross::SPIRType::ImageType& image, const std::string& name,
@@ -88,7 +101,7 @@ std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::strin
       return TextureFormat::rgba32_float;
     default:
       throw Error(ErrorCode::unsupported, label,
-                  "the storage image " + name + " has SPIR-V image format " + std::to_string(format) +
+                  "the storage image " + name + " has the image format " + image_format_name(format) +
                       ", which not every device has");
   }
 }

@@ -19,6 +19,9 @@ constexpr std::uint32_t sbt_bits = 0xF;
 constexpr std::uint32_t miss_bits = 0xFFFF;
 constexpr std::uint32_t mask_bits = 0xFF;
 
+/// What an intersection shader, which decides about it, is given for the kind of its hit.
+constexpr std::uint32_t no_hit_kind = 0;
+
 struct alignas(16) HitAttributes {
   std::byte bytes[kernel::max_hit_attribute_size];
 };
@@ -87,6 +90,18 @@ ShaderCall call_of_ray(const ShaderCall& caller, const Ray& ray, void* payload, 
   return call;
 }
 
+/// The call of a shader that serves a ray at one of its hits.
+/// @param t of the hit, or what an intersection shader sees as gl_RayTmaxEXT
+ShaderCall call_at_hit(const Traversal& traversal, const Hit& hit, float t, std::uint32_t hit_kind, void* attributes) {
+  ShaderCall call = call_of_ray(traversal.caller, traversal.ray, traversal.payload, traversal.payload_size);
+  call.hit_attributes = attributes;
+  call.t = t;
+  call.hit_kind = hit_kind;
+  call.hit = &hit;
+  call.instance = &traversal.scene.instances[hit.instance_index];
+  return call;
+}
+
 /// Calls the shader, unless its payload is larger than the one that it would be given.
 void run(const RayLaunch& launch, std::uint32_t shader, const std::byte* record_data, ShaderCall& call) {
   const BoundShader& bound = launch.shaders[shader];
@@ -134,12 +149,7 @@ const HitRecord* use_hit_record(const Traversal& traversal, const Hit& hit) {
 /// @param hit with the t at which it is hit
 HitDecision run_any_hit(const Traversal& traversal, const HitRecord& record, const Hit& hit, std::uint32_t hit_kind,
                         void* attributes) {
-  ShaderCall call = call_of_ray(traversal.caller, traversal.ray, traversal.payload, traversal.payload_size);
-  call.hit_attributes = attributes;
-  call.t = hit.t;
-  call.hit_kind = hit_kind;
-  call.hit = &hit;
-  call.instance = &traversal.scene.instances[hit.instance_index];
+  ShaderCall call = call_at_hit(traversal, hit, hit.t, hit_kind, attributes);
   run(traversal.launch, record.any_hit, record.data, call);
   return call.decision;
 }
@@ -173,11 +183,10 @@ CandidateDecision visit_box(void* context, Hit& candidate, float t_max) {
 
   BoxCandidate box{.traversal = traversal, .record = *record, .hit = candidate};
   HitAttributes attributes{};
-  ShaderCall call = call_of_ray(traversal.caller, traversal.ray, nullptr, 0);
-  call.hit_attributes = attributes.bytes;
-  call.t = t_max;
-  call.hit = &candidate;
-  call.instance = &traversal.scene.instances[candidate.instance_index];
+  ShaderCall call = call_at_hit(traversal, candidate, t_max, no_hit_kind, attributes.bytes);
+  // Intersection shaders have none.
+  call.payload = nullptr;
+  call.payload_size = 0;
   Invocation& invocation = invocation_of(call);
   invocation.box = &box;
   run(traversal.launch, record->intersection, record->data, call);
@@ -222,12 +231,8 @@ void run_closest_hit(Traversal& traversal, const Hit& hit) {
   const HitRecord* record = use_hit_record(traversal, hit);
   if (record == nullptr || record->closest_hit == rhi::no_shader) return;
   HitAttributes attributes = hit.is_box ? traversal.box_attributes : triangle_attributes(hit);
-  ShaderCall call = call_of_ray(traversal.caller, traversal.ray, traversal.payload, traversal.payload_size);
-  call.hit_attributes = attributes.bytes;
-  call.t = hit.t;
-  call.hit_kind = hit.is_box ? traversal.box_hit_kind : triangle_hit_kind(hit);
-  call.hit = &hit;
-  call.instance = &traversal.scene.instances[hit.instance_index];
+  const std::uint32_t hit_kind = hit.is_box ? traversal.box_hit_kind : triangle_hit_kind(hit);
+  ShaderCall call = call_at_hit(traversal, hit, hit.t, hit_kind, attributes.bytes);
   run(traversal.launch, record->closest_hit, record->data, call);
 }
 
@@ -241,7 +246,11 @@ void run_miss(const ShaderCall& caller, const RayLaunch& launch, const Ray& ray,
   run(launch, record->shader, record->data, call);
 }
 
-enum class Outcome { miss, hit, hit_nobody_asks_for };
+enum class Outcome {
+  miss,
+  hit,
+  occluded  ///< something is hit; what it is, no shader asks
+};
 
 /// Finds what the ray hits, with as few calls as that takes.
 Outcome find_hit(Traversal& traversal, Hit& hit) {
@@ -256,10 +265,10 @@ Outcome find_hit(Traversal& traversal, Hit& hit) {
                                            .visits_opaque_triangles = table.has_intersection()};
     return scene.functions->visit(scene, ray, visitor, hit) ? Outcome::hit : Outcome::miss;
   }
-  constexpr std::uint32_t asks_whether =
+  constexpr std::uint32_t any_hit_only =
       kernel::ray_flag_terminate_on_first_hit | kernel::ray_flag_skip_closest_hit_shader;
-  if ((ray.flags & asks_whether) == asks_whether)
-    return scene.functions->occluded(scene, ray) ? Outcome::hit_nobody_asks_for : Outcome::miss;
+  if ((ray.flags & any_hit_only) == any_hit_only)
+    return scene.functions->occluded(scene, ray) ? Outcome::occluded : Outcome::miss;
   return scene.functions->closest(scene, ray, hit) ? Outcome::hit : Outcome::miss;
 }
 

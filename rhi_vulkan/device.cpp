@@ -150,7 +150,7 @@ std::size_t device_index(const std::string& name) {
     if (error == std::errc() && parsed == end) return index;
   }
   throw rhi::Error(rhi::ErrorCode::no_such_device, "",
-                   "'" + name + "' names no Vulkan device: it must be vulkan or vulkan:N");
+                   "'" + name + "' is not a Vulkan device: the name must be vulkan or vulkan:N");
 }
 
 [[noreturn]] void throw_no_such_device(const std::string& name, const PhysicalDevices& devices) {

@@ -95,7 +95,8 @@ Instance::Instance(bool driver_validation, rhi::MessageCallback on_message)
                                    .ppEnabledLayerNames = layers.data(),
                                    .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
                                    .ppEnabledExtensionNames = extensions.data()};
-    // Otherwise nobody listens yet: what the loader says of a machine without drivers is the error's sentence.
+    // Without validation there is no messenger yet: the loader's message on a machine without drivers becomes the
+    // error.
     if (driver_validation) info.pNext = &validation_features;
     instance_ = vk::raii::Instance(loader_, info);
     if (listens) messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, messenger);

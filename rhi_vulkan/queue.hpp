@@ -25,9 +25,9 @@ class Queue {
   /// Waits until submission `number` has executed, at most `timeout`; false when that passed.
   bool wait(std::uint64_t number, std::chrono::nanoseconds timeout);
   void wait(std::uint64_t number);
-  /// Lets go of what finished submissions needed.
+  /// Releases what finished submissions needed.
   void release_finished();
-  /// Waits for everything and lets go of it, whatever the driver says: the end of the device.
+  /// Waits for all submissions and releases what they needed, whatever the driver returns: for the device's destructor.
   void drain() noexcept;
 
  private:

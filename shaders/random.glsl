@@ -30,7 +30,7 @@ uint medium_dimension(uint segment) { return 0x20000000u + segment; }
 /// Of path segment `segment`: which transparent triangles it meets.
 uint segment_dimension(uint segment) { return 0x80000000u + 2 * segment; }
 
-/// Of the ray to a light from the vertex at its end: likewise.
+/// Of the shadow ray from the vertex at the segment's end: likewise.
 uint shadow_dimension(uint segment) { return 0x80000001u + 2 * segment; }
 
 uvec4 pcg4d(uvec4 v) {

@@ -1,6 +1,6 @@
 // How a ray is traced, and the only file that knows. An entry point says by macros which way is meant:
 //   TANDEM_TRACE_PIPELINE  a ray tracing pipeline, else ray queries
-//   TANDEM_EVENTS          every ray and its answer is written down (integrator/events.glsl); it changes neither
+//   TANDEM_EVENTS          every ray and its answer is recorded (integrator/events.glsl); it changes neither
 // Both ways give the same answers, to the last bit: what decides whether a triangle counts depends on the ray and the
 // triangle only (geometry/opacity.glsl), not on the order in which a device offers them.
 

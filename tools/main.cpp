@@ -6,6 +6,7 @@
 #include <new>
 #include <string>
 
+#include "base/progress.hpp"
 #include "tools/command.hpp"
 #include "tools/output/interruption.hpp"
 
@@ -28,7 +29,7 @@ int run(int argc, char** argv) {
   app.footer(
       "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device is\n"
       "wrong (explain, conformance); 2 any error, with one sentence on standard error; 130 interrupted.\n"
-      "'tandem COMMAND --help' explains a command.");
+      "'tandem COMMAND --help' describes a command and its options.");
   Action action;
   add_devices_command(app, action);
   add_render_command(app, action);
@@ -65,10 +66,10 @@ int main(int argc, char** argv) {
     const int code = run(argc, argv);
     if (std::fflush(stdout) != 0) return fail("standard output cannot be written");
     return code;
-  } catch (const Interrupted& interruption) {
+  } catch (const tandem::Cancelled& interruption) {
     return fail(interruption.what(), exit_code::interrupted);
   } catch (const std::bad_alloc&) {
-    return fail("there is not enough memory for this scene and image size");
+    return fail("not enough memory for this scene and image size");
   } catch (const std::exception& error) {
     return fail(error.what());
   }

@@ -22,8 +22,8 @@ double normal_p_value(double z);
 /// Two-sided, of Student's t; `freedom` > 0.
 double student_p_value(double t, double freedom);
 
-/// That the smallest of `count` independent p-values is at most `smallest` (Sidak 1967). What a family of tests is
-/// judged by.
+/// That the smallest of `count` independent p-values is at most `smallest` (Sidak 1967): the p-value of a family of
+/// tests.
 double sidak(double smallest, std::size_t count);
 
 }  // namespace tandem::statistics

@@ -8,59 +8,28 @@
 
 #include <glm/geometric.hpp>
 
+#include "compare/geometry/distance.hpp"
+#include "compare/geometry/primitive.hpp"
+#include "compare/geometry/ray.hpp"
+#include "compare/geometry/rounding.hpp"
+
 namespace tandem::compare {
 namespace {
 
 using pathtracer::RayKind;
 using pathtracer::TracedRay;
 
-constexpr double tolerated_ulp = 32;
-
-double largest_magnitude(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-
-struct Corners {
-  glm::dvec3 a, b, c;
-};
-
-Corners corners_of(const pathtracer::Scene& scene, std::uint32_t triangle) {
-  const auto position = [&](int corner) {
-    return glm::dvec3(scene.positions[scene.triangles[triangle].vertices[corner]]);
-  };
-  return {position(0), position(1), position(2)};
-}
-
-/// The point of a triangle that is closest to `p` (Ericson, Real-Time Collision Detection, section 5.1.5: by the
-/// Voronoi region in which the point lies).
-glm::dvec3 closest_point(const Corners& t, const glm::dvec3& p) {
-  const auto on_segment = [&](const glm::dvec3& from, const glm::dvec3& to) {
-    const glm::dvec3 along = to - from;
-    const double squared_length = glm::dot(along, along);
-    const double s = squared_length > 0 ? std::clamp(glm::dot(p - from, along) / squared_length, 0.0, 1.0) : 0.0;
-    return from + s * along;
-  };
-  const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
-  const auto is_inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
-    return glm::dot(glm::cross(to - from, p - from), normal) >= 0;
-  };
-  if (glm::dot(normal, normal) > 0 && is_inside(t.a, t.b) && is_inside(t.b, t.c) && is_inside(t.c, t.a))
-    return p - normal * (glm::dot(p - t.a, normal) / glm::dot(normal, normal));
-  glm::dvec3 best = on_segment(t.a, t.b);
-  for (const glm::dvec3& candidate : {on_segment(t.b, t.c), on_segment(t.c, t.a)})
-    if (glm::distance(candidate, p) < glm::distance(best, p)) best = candidate;
-  return best;
-}
-
 /// Where the ray meets the plane of a triangle; nothing for a ray in the plane.
 std::optional<glm::dvec3> point_in_plane(const TracedRay& ray, const Corners& t) {
   const glm::dvec3 origin(ray.origin), direction(ray.direction);
-  const glm::dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
+  const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
   const double cosine = glm::dot(normal, direction);
   if (cosine == 0) return std::nullopt;
-  return origin + glm::dot(t.a - origin, normal) / cosine * direction;
+  return origin + glm::dot(t[0] - origin, normal) / cosine * direction;
 }
 
 /// Of the coordinates that intersecting a sphere computes with.
-double largest_magnitude(const pathtracer::GpuSphere& sphere) {
+double magnitude_of(const pathtracer::GpuSphere& sphere) {
   const glm::dvec3 begin(sphere.centre), end = begin + glm::dvec3(sphere.motion);
   return std::max({largest_magnitude(begin), largest_magnitude(end), double{sphere.radius}});
 }
@@ -80,12 +49,6 @@ std::optional<glm::dvec3> point_on_sphere(const TracedRay& ray, const pathtracer
   return glm::dvec3(ray.origin) + t * direction;
 }
 
-/// The sphere that an answer names, or none.
-const pathtracer::GpuSphere* sphere_of(const pathtracer::Scene& scene, std::uint32_t answer) {
-  const std::size_t index = std::size_t{answer} - scene.triangles.size();
-  return answer >= scene.triangles.size() && index < scene.spheres.size() ? &scene.spheres[index] : nullptr;
-}
-
 /// Where the ray meets the primitive that an answer names, if that can be told.
 std::optional<glm::dvec3> point_on(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32_t answer) {
   if (answer < scene.triangles.size()) return point_in_plane(ray, corners_of(scene, answer));
@@ -93,26 +56,26 @@ std::optional<glm::dvec3> point_on(const TracedRay& ray, const pathtracer::Scene
   return sphere != nullptr ? point_on_sphere(ray, *sphere) : std::nullopt;
 }
 
-double largest_magnitude(const pathtracer::Scene& scene) {
+double magnitude_of(const pathtracer::Scene& scene) {
   double magnitude = 0;
-  for (const pathtracer::GpuSphere& sphere : scene.spheres) magnitude = std::max(magnitude, largest_magnitude(sphere));
+  for (const pathtracer::GpuSphere& sphere : scene.spheres) magnitude = std::max(magnitude, magnitude_of(sphere));
   for (const glm::vec3& position : scene.positions)
     magnitude = std::max(magnitude, largest_magnitude(glm::dvec3(position)));
   return magnitude;
 }
 
-/// How far rounding may put a hit from where it is, in world space. @param scene_magnitude largest_magnitude(scene)
+/// How far rounding may put a hit from where it is, in world space. @param scene_magnitude magnitude_of(scene)
 double tolerated_distance(const TracedRay& ray, const pathtracer::Scene& scene, double scene_magnitude,
                           std::uint32_t primitive) {
   double magnitude = scene_magnitude;
   if (primitive < scene.triangles.size()) {
     const Corners t = corners_of(scene, primitive);
-    magnitude = std::max({largest_magnitude(t.a), largest_magnitude(t.b), largest_magnitude(t.c)});
+    magnitude = std::max({largest_magnitude(t[0]), largest_magnitude(t[1]), largest_magnitude(t[2])});
   } else if (const pathtracer::GpuSphere* sphere = sphere_of(scene, primitive)) {
-    magnitude = largest_magnitude(*sphere);
+    magnitude = magnitude_of(*sphere);
   }
   magnitude = std::max(magnitude, largest_magnitude(glm::dvec3(ray.origin)));
-  return tolerated_ulp * double{std::numeric_limits<float>::epsilon()} * magnitude;
+  return rounding_distance(magnitude);
 }
 
 /// Two unit vectors perpendicular to `v` and to each other.
@@ -154,19 +117,6 @@ std::vector<TracedRay> neighbours(const TracedRay& ray, double distance, double 
   return rays;
 }
 
-/// The points of a ray, from its origin on, and of a segment that are closest to each other.
-std::pair<glm::dvec3, glm::dvec3> closest_points(const TracedRay& ray, const glm::dvec3& from, const glm::dvec3& to) {
-  const glm::dvec3 origin(ray.origin), direction(ray.direction), along = to - from;
-  const double a = glm::dot(direction, direction), b = glm::dot(direction, along), c = glm::dot(along, along);
-  const glm::dvec3 between = origin - from;
-  const double determinant = a * c - b * b;
-  double s = c > 0 ? glm::dot(between, along) / c : 0;  // of the ray's origin: for a ray along the segment
-  if (determinant > 1e-12 * a * c) s = (a * glm::dot(between, along) - b * glm::dot(between, direction)) / determinant;
-  const glm::dvec3 on_segment = from + std::clamp(s, 0.0, 1.0) * along;
-  const double t = std::clamp(glm::dot(on_segment - origin, direction) / a, 0.0, double{ray.t_max});
-  return {origin + t * direction, on_segment};
-}
-
 /// Whether the ray passes within `distance` of a triangle, in front of what it exactly hits, or not that far behind:
 /// an intersection test may then take the triangle to be hit. A triangle that is seen edge-on is hit by no ray
 /// exactly. Of a sphere the neighbours of the ray say as much.
@@ -182,8 +132,8 @@ bool passes_by(const TracedRay& ray, const pathtracer::Scene& scene, std::uint32
     if (glm::distance(closest_point(t, *hit), *hit) <= distance) return true;
     reach = glm::distance(*hit, origin);
   }
-  for (const auto& [from, to] : {std::pair(t.a, t.b), std::pair(t.b, t.c), std::pair(t.c, t.a)}) {
-    const auto [on_ray, on_edge] = closest_points(ray, from, to);
+  for (const auto& [from, to] : {std::pair(t[0], t[1]), std::pair(t[1], t[2]), std::pair(t[2], t[0])}) {
+    const auto [on_ray, on_edge] = closest_points(geometry_ray(ray), double{ray.t_max}, from, to);
     if (glm::distance(on_ray, on_edge) <= distance && glm::distance(on_ray, origin) <= reach + distance) return true;
   }
   return false;
@@ -205,13 +155,13 @@ const char* name(Ruling ruling) {
   return "";
 }
 
-std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
-                                 const ExactTracer& trace) {
+std::vector<Arbitration> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
+                                   const ExactTracer& trace) {
   std::vector<TracedRay> rays;
   for (const Dispute& dispute : disputes) rays.push_back(dispute.ray);
   const std::vector<std::uint32_t> exact = trace(rays);
 
-  const double scene_magnitude = largest_magnitude(scene);
+  const double scene_magnitude = magnitude_of(scene);
   // All neighbours in one go: a device is slow to start.
   std::vector<TracedRay> moved;
   std::vector<std::size_t> first_moved;
@@ -231,7 +181,7 @@ std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtr
   first_moved.push_back(moved.size());
   const std::vector<std::uint32_t> moved_answers = trace(moved);
 
-  std::vector<Judgement> judgements;
+  std::vector<Arbitration> arbitrations;
   for (std::size_t i = 0; i < disputes.size(); ++i) {
     const Dispute& dispute = disputes[i];
     const auto is_right = [&](std::uint32_t answer) {
@@ -242,11 +192,11 @@ std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtr
       return dispute.ray.kind == RayKind::closest && passes_by(dispute.ray, scene, answer, exact[i], distances[i]);
     };
     const bool a = is_right(dispute.answer_a), b = is_right(dispute.answer_b);
-    judgements.push_back(
+    arbitrations.push_back(
         {.ruling = a && b ? Ruling::tie : (a ? Ruling::a_right : (b ? Ruling::b_right : Ruling::both_wrong)),
          .exact_answer = exact[i]});
   }
-  return judgements;
+  return arbitrations;
 }
 
 }  // namespace tandem::compare

@@ -28,7 +28,7 @@ enum class Ruling {
 /// "a is right", "b is right", "both are wrong", "tie".
 const char* name(Ruling ruling);
 
-struct Judgement {
+struct Arbitration {
   Ruling ruling = Ruling::tie;
   std::uint32_t exact_answer = 0;
 };
@@ -36,12 +36,10 @@ struct Judgement {
 /// Answers rays exactly: one answer for each, as TracedRay::answer has it.
 using ExactTracer = std::function<std::vector<std::uint32_t>(std::span<const pathtracer::TracedRay> rays)>;
 
-/// Judges each dispute. An answer is right when it is the exact one. It is right within rounding when some ray that
-/// differs from this one by no more than 32 units in the last place of the largest coordinate involved has it exactly,
-/// or when the ray passes its triangle (not its sphere) that closely, no farther away than the exact hit: backends
-/// transform, clip and intersect in single precision, and 32 units is what the path tracer's own offset allows them
-/// (shaders/geometry/offset_ray.glsl).
-std::vector<Judgement> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
-                                 const ExactTracer& trace);
+/// Arbitrates each dispute. An answer is right when it is the exact one. It is right within rounding when some ray that
+/// differs from this one by no more than tolerated_ulp (compare/geometry/rounding.hpp) has it exactly, or when the ray
+/// passes its triangle (not its sphere) that closely, no farther away than the exact hit.
+std::vector<Arbitration> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
+                                   const ExactTracer& trace);
 
 }  // namespace tandem::compare

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <iterator>
-#include <random>
+#include <optional>
+#include <span>
 #include <utility>
 
-#include "compare/cause/path_classifier.hpp"
+#include "compare/cause/pixel_selection.hpp"
 #include "compare/image/difference.hpp"
 #include "pathtracer/render/device_scene.hpp"
+#include "pathtracer/render/path_recorder.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -26,59 +27,6 @@ constexpr std::size_t largest_batch = 1u << 15;
 
 /// Paths whose recordings are in memory at once.
 constexpr std::size_t paths_at_once = 2048;
-
-struct Candidate {
-  glm::uvec2 pixel{0};
-  bool differs = false;
-  bool surveyed = false;
-};
-
-std::uint64_t row_order(const glm::uvec2& pixel) { return (std::uint64_t{pixel.y} << 32u) + pixel.x; }
-
-/// About `count` pixels, one at a random place in each cell of a grid; all of them when they are no more than that.
-std::vector<glm::uvec2> spread_pixels(std::uint32_t width, std::uint32_t height, std::size_t count) {
-  std::vector<glm::uvec2> pixels;
-  if (count == 0) return pixels;
-  const double cells = std::min(static_cast<double>(count), static_cast<double>(width) * height);
-  const double aspect = static_cast<double>(width) / height;
-  const std::uint32_t columns =
-      std::clamp(static_cast<std::uint32_t>(std::lround(std::sqrt(cells * aspect))), 1u, width);
-  const std::uint32_t rows = std::clamp(static_cast<std::uint32_t>(std::lround(cells / columns)), 1u, height);
-  std::mt19937 random(1);
-  const auto place = [&](std::uint32_t cell, std::uint32_t cell_count, std::uint32_t size) {
-    const auto begin = static_cast<std::uint32_t>(std::uint64_t{cell} * size / cell_count);
-    const auto end = static_cast<std::uint32_t>((std::uint64_t{cell} + 1) * size / cell_count);
-    return begin + static_cast<std::uint32_t>(random()) % (end - begin);
-  };
-  for (std::uint32_t row = 0; row < rows; ++row)
-    for (std::uint32_t column = 0; column < columns; ++column) {
-      const std::uint32_t x = place(column, columns, width);
-      pixels.emplace_back(x, place(row, rows, height));
-    }
-  return pixels;
-}
-
-/// What is to be looked at, in an order that spreads evenly over the picture from the beginning on.
-std::vector<Candidate> candidates(std::span<const glm::uvec2> differing, std::span<const glm::uvec2> surveyed) {
-  std::vector<Candidate> all;
-  for (const glm::uvec2& pixel : differing) all.push_back({.pixel = pixel, .differs = true});
-  for (const glm::uvec2& pixel : surveyed) all.push_back({.pixel = pixel, .surveyed = true});
-  std::stable_sort(all.begin(), all.end(), [](const Candidate& first, const Candidate& second) {
-    return row_order(first.pixel) < row_order(second.pixel);
-  });
-  std::vector<Candidate> merged;
-  for (const Candidate& each : all) {
-    if (merged.empty() || merged.back().pixel != each.pixel) {
-      merged.push_back(each);
-    } else {
-      merged.back().differs |= each.differs;
-      merged.back().surveyed |= each.surveyed;
-    }
-  }
-  std::mt19937 random(2);
-  for (std::size_t i = merged.size(); i > 1; --i) std::swap(merged[i - 1], merged[random() % i]);
-  return merged;
-}
 
 /// Whether a pixel is the mean of its paths, bit by bit, as Renderer::image takes it.
 bool is_sum(const Image& image, const glm::uvec2& pixel, std::span<const PathSummary> paths) {
@@ -102,17 +50,18 @@ class Classifier {
         image_b_(image_b),
         samples_(samples) {}
 
-  void look_at(std::span<const Candidate> pixels) {
+  void look_at(std::span<const SelectedPixel> pixels) {
     std::vector<PathStart> starts;
-    for (const Candidate& each : pixels)
+    for (const SelectedPixel& each : pixels)
       for (std::uint32_t sample = 0; sample < samples_; ++sample)
         starts.push_back({.path = {.pixel = each.pixel, .sample = sample}});
-    const std::vector<PathSummary> a = devices_.a.summarize_paths(starts), b = devices_.b.summarize_paths(starts);
+    const std::vector<PathSummary> a = pathtracer::summarize_paths(devices_.a, starts),
+                                   b = pathtracer::summarize_paths(devices_.b, starts);
     result_.traced_paths += starts.size();
 
     std::vector<PathId> paths;
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      const bool differs = !is_same(a[i], b[i]);
+      const bool differs = a[i] != b[i];
       result_.differing_paths += differs ? 1 : 0;
       if (differs || (pixels[i / samples_].surveyed && i % samples_ == 0)) paths.push_back(starts[i].path);
     }
@@ -149,7 +98,7 @@ class Classifier {
     recorded_paths_ += paths.size();
     for (std::size_t first = 0; first < paths.size(); first += paths_at_once) {
       const auto some = paths.subspan(first, std::min(paths_at_once, paths.size() - first));
-      for (ClassifiedPath& path : judge_paths(devices_, scene_, some)) {
+      for (ClassifiedPath& path : classify_paths(devices_, scene_, some)) {
         for (const Divergence& divergence : path.divergences)
           ++result_.divergence_counts[static_cast<std::size_t>(divergence.difference_class)];
         if (!path.divergences.empty()) result_.paths.push_back(std::move(path));
@@ -158,20 +107,20 @@ class Classifier {
   }
 
   /// @param paths those of the batch
-  void add_pixel(const Candidate& candidate, char wrong_sum, std::span<const ClassifiedPath> paths) {
+  void add_pixel(const SelectedPixel& selected, char wrong_sum, std::span<const ClassifiedPath> paths) {
     std::optional<DifferenceClass> worst;
     for (const ClassifiedPath& path : paths)
-      if (path.path.pixel == candidate.pixel) worst = std::max(worst, path.worst());
+      if (path.path.pixel == selected.pixel) worst = std::max(worst, path.worst());
     if (wrong_sum != 0) worst = DifferenceClass::mismatch;
-    if (candidate.surveyed) ++result_.surveyed_pixels;
-    if (candidate.differs) {
+    if (selected.surveyed) ++result_.surveyed_pixels;
+    if (selected.differs) {
       ++result_.classed_pixels;
       // A picture that differs while no path does would be the work of neither.
       if (!worst) worst = DifferenceClass::mismatch;
       ++result_.pixel_counts[static_cast<std::size_t>(*worst)];
     }
-    if (candidate.differs || worst == DifferenceClass::mismatch)
-      result_.pixels.push_back({.pixel = candidate.pixel, .difference_class = *worst, .wrong_sum = wrong_sum});
+    if (selected.differs || worst == DifferenceClass::mismatch)
+      result_.pixels.push_back({.pixel = selected.pixel, .difference_class = *worst, .wrong_sum = wrong_sum});
   }
 
   Devices devices_;
@@ -185,12 +134,6 @@ class Classifier {
 
 }  // namespace
 
-std::optional<DifferenceClass> ClassifiedPath::worst() const {
-  std::optional<DifferenceClass> worst;
-  for (const Divergence& divergence : divergences) worst = std::max(worst, std::optional(divergence.difference_class));
-  return worst;
-}
-
 std::uint64_t Classification::mismatches() const {
   const auto wrong_paths = std::ranges::count_if(
       paths, [](const ClassifiedPath& path) { return path.worst() == DifferenceClass::mismatch; });
@@ -200,11 +143,11 @@ std::uint64_t Classification::mismatches() const {
 }
 
 Classification classify(Devices devices, const Image& image_a, const Image& image_b, std::uint32_t samples,
-                        const ClassificationOptions& options, const pathtracer::Progress& progress) {
+                        const ClassificationOptions& options, const Progress& progress) {
   std::uint64_t differing_count = 0;
   const std::vector<glm::uvec2> differing = differing_pixels(image_a, image_b, options.pixel_limit, differing_count);
-  const std::vector<Candidate> pixels =
-      candidates(differing, spread_pixels(image_a.width, image_a.height, options.survey_pixels));
+  const std::vector<SelectedPixel> pixels =
+      select_pixels(differing, image_a.width, image_a.height, options.survey_pixels);
   Classifier classifier(devices, image_a, image_b, samples);
   std::size_t batch = first_batch;
   for (std::size_t first = 0; samples > 0 && first < pixels.size();) {
@@ -219,10 +162,6 @@ Classification classify(Devices devices, const Image& image_a, const Image& imag
   Classification result = std::move(classifier).finish();
   result.differing_pixels = differing_count;
   return result;
-}
-
-std::vector<ClassifiedPath> classify_paths(Devices devices, std::span<const PathId> paths) {
-  return judge_paths(devices, pathtracer::in_device_order(devices.scene), paths);
 }
 
 }  // namespace tandem::compare

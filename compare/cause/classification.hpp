@@ -1,49 +1,25 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
+#include "base/progress.hpp"
 #include "compare/cause/difference_class.hpp"
-#include "compare/path/event_fields.hpp"
+#include "compare/cause/divergence.hpp"
+#include "compare/cause/path_classifier.hpp"
 #include "pathtracer/image/image.hpp"
-#include "pathtracer/render/path_event.hpp"
-#include "pathtracer/render/renderer.hpp"
-#include "pathtracer/scene/scene.hpp"
 
 /// Why two devices differ: paths are recorded on both, and every event in which they part is classed.
 ///
 /// Device b runs each segment of a path from the state that a had at its beginning. Both then have the same inputs, bit
-/// by bit, so each segment is judged by itself, however often they part on a path, and no error builds up. A segment's
-/// answers to rays are judged by the exact arbiter; values by a tolerance, and, where that is not enough, like
-/// decisions, by what either device makes of the same state moved by rounding (compare/cause/perturbation.hpp).
+/// by bit, so each segment is classified by itself, however often they part on a path, and no error builds up. Two
+/// answers to a ray are arbitrated by an exact tracer. Values are held to a tolerance; where that is not enough they
+/// are compared, as decisions are, with what either device makes of the same state moved by rounding
+/// (perturbation.hpp).
 namespace tandem::compare {
-
-/// A place where two devices do not do the same from the same inputs.
-struct Divergence {
-  DifferenceClass difference_class = DifferenceClass::mismatch;
-  std::uint32_t segment = 0;
-  std::size_t event_index = 0;        ///< in a's recording of the whole path
-  pathtracer::PathEvent a, b;         ///< the events, of different kinds when that is how they part
-  const EventField* field = nullptr;  ///< the first of a's kind that decides the class; null: the kinds differ
-  std::uint32_t ulp_distance = 0;     ///< of the field
-  double relative_difference = 0;     ///< likewise
-  std::optional<std::uint32_t> exact_answer = {};  ///< of a ray with two answers: TracedRay::answer
-  std::string sentence = {};                       ///< what happened, for people
-};
-
-/// A path that differs, or was looked at all the same.
-struct ClassifiedPath {
-  pathtracer::PathId path;
-  std::vector<Divergence> divergences;  ///< in the order of the path; empty: none
-  /// The worst of its divergences; none when there are none.
-  std::optional<DifferenceClass> worst() const;
-};
 
 /// A pixel and the worst that was found in its paths.
 struct ClassifiedPixel {
@@ -75,22 +51,10 @@ struct Classification {
   std::uint64_t mismatches() const;     ///< paths with a mismatch, and pixels with a wrong sum
 };
 
-/// Three renderers of the same scene and settings.
-struct Devices {
-  pathtracer::Renderer& a;
-  pathtracer::Renderer& b;
-  pathtracer::Renderer& arbiter;   ///< traces exactly
-  const pathtracer::Scene& scene;  ///< as the renderers were given it
-};
-
 /// Classes the difference of two pictures. @param samples behind each pixel of both
 /// @param progress of the work at most; cancelling it gives what is known so far
 Classification classify(Devices devices, const pathtracer::Image& image_a, const pathtracer::Image& image_b,
                         std::uint32_t samples, const ClassificationOptions& options = {},
-                        const pathtracer::Progress& progress = {});
-
-/// The divergences of paths, observed fields included; one element for each path, in their order. All recordings are in
-/// memory at once: some 20 KB a path.
-std::vector<ClassifiedPath> classify_paths(Devices devices, std::span<const pathtracer::PathId> paths);
+                        const Progress& progress = {});
 
 }  // namespace tandem::compare

@@ -16,12 +16,12 @@ std::uint32_t color(DifferenceClass difference_class) {
 
 const char* meaning(DifferenceClass difference_class) {
   static constexpr std::array<const char*, difference_class_count> meanings = {
-      "A value differs by rounding, and nothing was decided by it.",
-      "A ray passes an edge or a vertex within rounding, and each device took another of what meets there.",
-      "A shadow ray grazes what is in its way, or is not.",
-      "A choice, of a lobe, of roulette, of a side, lay within rounding of its threshold.",
-      "Two surfaces lie in the same place, and each device took another.",
-      "Rounding does not explain it: one of the devices is wrong."};
+      "A value differs by rounding, but decides nothing.",
+      "A ray passes an edge or a vertex within rounding, and the devices report different primitives there.",
+      "A shadow ray grazes an occluder within rounding.",
+      "A choice (of a lobe, a light, a side, roulette) lies within rounding of its threshold.",
+      "Two surfaces lie in the same place, and the devices report different ones.",
+      "Rounding does not explain the difference: one of the devices is wrong."};
   return meanings[static_cast<std::size_t>(difference_class)];
 }
 

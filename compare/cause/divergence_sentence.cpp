@@ -26,17 +26,17 @@ std::string kind_text(const PathEvent& event) {
 std::string roulette_text(const Divergence& divergence) {
   const bool survives = divergence.a.words[word::roulette_survives] != 0;
   return fmt::format("roulette {} on a and {} on b: the number {:.9g} lies within rounding of the threshold {:.9g}.",
-                     survives ? "goes on" : "ends the path", survives ? "ends the path" : "goes on",
-                     static_cast<double>(divergence.a.words[word::roulette_bits] >> 8u) * 0x1p-24,
+                     survives ? "continues the path" : "ends it", survives ? "ends it" : "continues the path",
+                     double{unit_interval(divergence.a.words[word::roulette_bits])},
                      divergence.a.number(word::roulette_survival));
 }
 
 std::string decision_text(const Divergence& divergence) {
   const bool flipped = divergence.difference_class == DifferenceClass::flipped_decision;
-  const char* const cause = flipped ? "moving the segment by rounding turns this decision on one device, too"
+  const char* const cause = flipped ? "moving the segment's state by rounding flips this decision on one device"
                                     : "from the same state, and rounding does not explain it";
   if (!divergence.field)
-    return fmt::format("a goes on with {}, b with {}: {}.", kind_text(divergence.a), kind_text(divergence.b), cause);
+    return fmt::format("a continues with {}, b with {}: {}.", kind_text(divergence.a), kind_text(divergence.b), cause);
   const EventField& field = *divergence.field;
   if (flipped && divergence.a.kind() == EventKind::roulette) return roulette_text(divergence);
   return fmt::format("the {} of the {} is {} on a and {} on b: {}.", field.name, name(divergence.a.kind()),
@@ -53,7 +53,7 @@ std::string value_text(const Divergence& divergence) {
                                          field_text(field, divergence.b));
   if (field.tier == FieldTier::observed)
     return fmt::format("{}, for the same hit of the same ray: more than rounding explains.", values);
-  return fmt::format("{}, {:.2g} apart relatively, from the same state: more than rounding explains.", values,
+  return fmt::format("{}, {:.2g} relative, from the same state: more than rounding explains.", values,
                      divergence.relative_difference);
 }
 
@@ -84,14 +84,14 @@ std::string sentence_of_answers(const Divergence& divergence, const pathtracer::
                                      occlusion ? "finds" : "meets", text(ray.answer), text(b));
   switch (divergence.difference_class) {
     case DifferenceClass::mismatch:
-      return fmt::format("{}; exactly it is {}, and rounding does not explain the difference.", sentence,
+      return fmt::format("{}; the exact answer is {}, and rounding does not explain the difference.", sentence,
                          text(divergence.exact_answer.value_or(pathtracer::no_primitive)));
     case DifferenceClass::grazing_visibility:
-      return sentence + " in its way; it grazes what is there: either is right.";
+      return sentence + " in its way; it grazes an occluder: either is right.";
     case DifferenceClass::coincident_geometry:
       return sentence + "; both lie in the same place: either is right.";
     case DifferenceClass::flipped_decision:
-      return sentence + "; the nearer one is transparent, and whether it lets the ray through lies within rounding.";
+      return sentence + "; the nearer one is transparent, and whether the ray passes it lies within rounding.";
     default: {
       const std::string passing = passing_text(scene, ray, ray.answer, b);
       return fmt::format("{}; {}either is right.", sentence, passing.empty() ? "" : passing + ": ");

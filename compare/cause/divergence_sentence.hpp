@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "compare/cause/classification.hpp"
+#include "compare/cause/divergence.hpp"
 #include "pathtracer/render/traced_ray.hpp"
 #include "pathtracer/scene/scene.hpp"
 

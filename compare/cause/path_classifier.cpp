@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -11,7 +10,10 @@
 #include "compare/cause/divergence_sentence.hpp"
 #include "compare/cause/perturbation.hpp"
 #include "compare/cause/segment_classifier.hpp"
-#include "compare/path/divergence.hpp"
+#include "compare/path/recording_difference.hpp"
+#include "pathtracer/render/device_scene.hpp"
+#include "pathtracer/render/path_recorder.hpp"
+#include "pathtracer/render/ray_tracer.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -22,8 +24,8 @@ using pathtracer::PathEvents;
 using pathtracer::PathId;
 using pathtracer::PathStart;
 using pathtracer::PathSummary;
-using pathtracer::Renderer;
 using pathtracer::Scene;
+using pathtracer::SceneOnDevice;
 namespace word = pathtracer::event_word;
 
 /// Segments whose variations are in memory at once: some 100 KB each.
@@ -37,9 +39,9 @@ void drop_limit(PathEvents& events) {
 }
 
 /// The segments of recordings, the way from the camera to the first among them, and what b makes of each.
-std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> paths,
-                                       const std::vector<PathEvents>& recordings) {
-  std::vector<JudgedSegment> segments;
+std::vector<ClassifiedSegment> segments_of(SceneOnDevice& b, std::span<const PathId> paths,
+                                           const std::vector<PathEvents>& recordings) {
+  std::vector<ClassifiedSegment> segments;
   std::vector<PathStart> starts;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const std::span<const PathEvent> events = recordings[i];
@@ -53,7 +55,7 @@ std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> path
     for (std::size_t j = 0; j < begins.size(); ++j)
       add(begins[j], end_after(j + 1), {.path = paths[i], .state = events[begins[j]], .segment_count = 1});
   }
-  std::vector<PathEvents> recorded = b.record_paths(starts);
+  std::vector<PathEvents> recorded = pathtracer::record_paths(b, starts);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     drop_limit(recorded[i]);
     segments[i].b = std::move(recorded[i]);
@@ -67,20 +69,20 @@ std::vector<JudgedSegment> segments_of(Renderer& b, std::span<const PathId> path
 }
 
 /// Recordings of the perturbed states of segments on a device, variation_count for each.
-std::vector<PathEvents> variations_on(Renderer& device, std::span<JudgedSegment* const> segments) {
+std::vector<PathEvents> variations_on(SceneOnDevice& device, std::span<ClassifiedSegment* const> segments) {
   std::vector<PathStart> starts;
-  for (const JudgedSegment* segment : segments)
+  for (const ClassifiedSegment* segment : segments)
     for (const PathEvent& state : perturbed_states(segment->a.front()))
       starts.push_back({.path = segment->path, .state = state, .segment_count = 1});
-  std::vector<PathEvents> recorded = device.record_paths(starts);
+  std::vector<PathEvents> recorded = pathtracer::record_paths(device, starts);
   std::for_each(recorded.begin(), recorded.end(), drop_limit);
   return recorded;
 }
 
-/// Judges segments by what both devices make of perturbed states, and returns those that need the arbiter then.
-std::vector<JudgedSegment*> judge_by_variations(const Devices& devices, const Scene& scene,
-                                                std::span<JudgedSegment* const> segments) {
-  std::vector<JudgedSegment*> disputed;
+/// Classifies segments by what both devices make of perturbed states, and returns those that need the arbiter then.
+std::vector<ClassifiedSegment*> classify_by_variations(const Devices& devices, const Scene& scene,
+                                                       std::span<ClassifiedSegment* const> segments) {
+  std::vector<ClassifiedSegment*> disputed;
   for (std::size_t first = 0; first < segments.size(); first += segments_at_once) {
     const auto some = segments.subspan(first, std::min(segments_at_once, segments.size() - first));
     std::vector<PathEvents> on_a = variations_on(devices.a, some), on_b = variations_on(devices.b, some);
@@ -90,30 +92,31 @@ std::vector<JudgedSegment*> judge_by_variations(const Devices& devices, const Sc
         return std::vector<PathEvents>(begin, begin + static_cast<std::ptrdiff_t>(variation_count));
       };
       const Variations variations{.a = own(on_a), .b = own(on_b)};
-      if (judge(*some[i], scene, &variations) == Needed::arbiter) disputed.push_back(some[i]);
+      if (classify_segment(*some[i], scene, &variations) == Pending::arbiter) disputed.push_back(some[i]);
     }
   }
   return disputed;
 }
 
-void judge_by_arbiter(const Devices& devices, const Scene& scene, std::span<JudgedSegment* const> segments) {
+void resolve_by_arbiter(const Devices& devices, const Scene& scene, std::span<ClassifiedSegment* const> segments) {
   std::vector<Dispute> disputes;
   std::vector<std::size_t> ends;
-  for (const JudgedSegment* segment : segments) {
+  for (const ClassifiedSegment* segment : segments) {
     for (const Dispute& dispute : disputes_of(*segment)) disputes.push_back(dispute);
     ends.push_back(disputes.size());
   }
   if (disputes.empty()) return;
-  const std::vector<Judgement> judgements = arbitrate(
-      disputes, scene, [&](std::span<const pathtracer::TracedRay> rays) { return devices.arbiter.answer(rays); });
+  const std::vector<Arbitration> arbitrations =
+      arbitrate(disputes, scene,
+                [&](std::span<const pathtracer::TracedRay> rays) { return pathtracer::trace(devices.arbiter, rays); });
   std::size_t begin = 0;
   for (std::size_t i = 0; i < segments.size(); begin = ends[i++])
-    conclude(*segments[i], scene, std::span(judgements).subspan(begin, ends[i] - begin));
+    resolve(*segments[i], scene, std::span(arbitrations).subspan(begin, ends[i] - begin));
 }
 
 /// A path of which b does something else than it does from the state of each segment by itself: a mismatch.
 Divergence hidden_divergence(std::span<const PathEvent> a, std::span<const PathEvent> b) {
-  const std::optional<EventPlace> place = first_divergence(a, b);
+  const std::optional<EventPlace> place = first_significant_difference(a, b);
   Divergence divergence;
   if (place) {
     divergence.event_index = place->event;
@@ -143,36 +146,32 @@ void find_hidden_divergences(const Devices& devices, std::span<const PathEvents>
     indices.push_back(i);
   }
   if (starts.empty()) return;
-  const std::vector<PathSummary> a = devices.a.summarize_paths(starts), b = devices.b.summarize_paths(starts);
+  const std::vector<PathSummary> a = pathtracer::summarize_paths(devices.a, starts),
+                                 b = pathtracer::summarize_paths(devices.b, starts);
   for (std::size_t i = 0; i < starts.size(); ++i) {
-    if (is_same(a[i], b[i])) continue;
-    const std::vector<PathEvents> whole = devices.b.record_paths({&starts[i], 1});
+    if (a[i] == b[i]) continue;
+    const std::vector<PathEvents> whole = pathtracer::record_paths(devices.b, {&starts[i], 1});
     paths[indices[i]].divergences.push_back(hidden_divergence(recordings[indices[i]], whole.front()));
   }
 }
 
 }  // namespace
 
-bool is_same(const PathSummary& a, const PathSummary& b) {
-  // The rest is reserved.
-  return std::memcmp(&a, &b, offsetof(PathSummary, reserved)) == 0;
-}
-
-std::vector<ClassifiedPath> judge_paths(const Devices& devices, const Scene& scene, std::span<const PathId> paths) {
+std::vector<ClassifiedPath> classify_paths(const Devices& devices, const Scene& scene, std::span<const PathId> paths) {
   std::vector<PathStart> starts;
   for (const PathId& path : paths) starts.push_back({.path = path});
-  const std::vector<PathEvents> recordings = devices.a.record_paths(starts);
-  std::vector<JudgedSegment> segments = segments_of(devices.b, paths, recordings);
+  const std::vector<PathEvents> recordings = pathtracer::record_paths(devices.a, starts);
+  std::vector<ClassifiedSegment> segments = segments_of(devices.b, paths, recordings);
 
-  std::vector<JudgedSegment*> undecided, disputed;
-  for (JudgedSegment& segment : segments) {
-    const Needed needed = judge(segment, scene, nullptr);
-    if (needed == Needed::variations) undecided.push_back(&segment);
-    if (needed == Needed::arbiter) disputed.push_back(&segment);
+  std::vector<ClassifiedSegment*> undecided, disputed;
+  for (ClassifiedSegment& segment : segments) {
+    const Pending pending = classify_segment(segment, scene, nullptr);
+    if (pending == Pending::variations) undecided.push_back(&segment);
+    if (pending == Pending::arbiter) disputed.push_back(&segment);
   }
-  const std::vector<JudgedSegment*> more = judge_by_variations(devices, scene, undecided);
+  const std::vector<ClassifiedSegment*> more = classify_by_variations(devices, scene, undecided);
   disputed.insert(disputed.end(), more.begin(), more.end());
-  judge_by_arbiter(devices, scene, disputed);
+  resolve_by_arbiter(devices, scene, disputed);
 
   std::vector<ClassifiedPath> result;
   auto segment = segments.begin();
@@ -183,6 +182,10 @@ std::vector<ClassifiedPath> judge_paths(const Devices& devices, const Scene& sce
   }
   find_hidden_divergences(devices, recordings, result);
   return result;
+}
+
+std::vector<ClassifiedPath> classify_paths(const Devices& devices, std::span<const PathId> paths) {
+  return classify_paths(devices, pathtracer::in_device_order(devices.scene), paths);
 }
 
 }  // namespace tandem::compare

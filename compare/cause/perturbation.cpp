@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "compare/geometry/rounding.hpp"
+
 namespace tandem::compare {
 namespace {
 
@@ -14,10 +16,7 @@ using pathtracer::PathEvent;
 using pathtracer::PathEvents;
 namespace word = pathtracer::event_word;
 
-constexpr double most_ulp = 32;
 constexpr double widening = 4;
-
-double largest_magnitude(const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 /// Numbers in [-1, 1], the same with every standard library.
 class Numbers {
@@ -54,7 +53,7 @@ PathEvent moved(const PathEvent& state, const Move& move) {
   PathEvent result = state;
   const auto position = [&](std::size_t index, const glm::dvec3& by) {
     const glm::vec3 value = state.vector(index);
-    result.set(index, glm::vec3(glm::dvec3(value) + by * (unit * largest_magnitude(value))));
+    result.set(index, glm::vec3(glm::dvec3(value) + by * (unit * largest_magnitude(glm::dvec3(value)))));
   };
   const auto number = [&](std::size_t index, double by) {
     result.set(index, static_cast<float>(double{state.number(index)} * (1.0 + unit * by)));
@@ -65,7 +64,7 @@ PathEvent moved(const PathEvent& state, const Move& move) {
   position(word::segment_origin, move.origin);
   position(word::segment_previous_position, move.previous);
   const glm::dvec3 direction(state.vector(word::segment_direction));
-  const glm::dvec3 turned = direction + move.direction * (unit * largest_magnitude(glm::vec3(direction)));
+  const glm::dvec3 turned = direction + move.direction * (unit * largest_magnitude(direction));
   result.set(word::segment_direction, glm::vec3(turned * (glm::length(direction) / glm::length(turned))));
   color(word::segment_throughput, move.throughput);
   color(word::segment_radiance, move.radiance);
@@ -144,7 +143,7 @@ std::vector<PathEvent> perturbed_states(const PathEvent& state) {
                        .density = numbers.next(),
                        .eta_scale = numbers.next()};
     // Small moves too: what lies between two thresholds that are close to each other is not missed.
-    static constexpr double sizes[] = {most_ulp, most_ulp / 4, most_ulp / 2, most_ulp / 16};
+    static constexpr double sizes[] = {tolerated_ulp, tolerated_ulp / 4, tolerated_ulp / 2, tolerated_ulp / 16};
     const double size = sizes[i % std::size(sizes)];
     for (const double sign : {1.0, -1.0}) states.push_back(moved(state, scaled(move, sign * size)));
   }

@@ -5,19 +5,19 @@
 #include <span>
 #include <vector>
 
-#include "compare/path/divergence.hpp"
+#include "compare/path/recording_difference.hpp"
 #include "pathtracer/render/path_event.hpp"
 
 /// What rounding may make of a segment: the same segment is run again from states that differ from its own by a few
 /// units in the last place.
 namespace tandem::compare {
 
-/// So many states are tried. A decision that rounding turns lies on one side for about half of them; that all miss it
-/// while it is nearer to its threshold than they reach has a probability of about 2^-64.
+/// The number of perturbed states that are tried. About half of them flip a decision that lies within their reach of
+/// its threshold, so the probability that none does is about 2^-64.
 inline constexpr std::size_t variation_count = 64;
 
-/// Events of kind segment with the state of `state`, moved by up to 32 units in the last place
-/// (compare/cause/arbitration.hpp says why 32): origin, direction and scatterer position by those of their largest
+/// Events of kind segment with the state of `state`, moved by up to tolerated_ulp units in the last place
+/// (compare/geometry/rounding.hpp): origin, direction and scatterer position by those of their largest
 /// component, the direction then of unit length again; throughput, radiance and densities each by their own, so that
 /// what is black stays black. Every second state is moved the other way than the one before it. The same for the same
 /// state.

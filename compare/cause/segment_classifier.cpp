@@ -19,7 +19,7 @@ PathEvent event_at(std::span<const PathEvent> events, EventPlace place) {
   return place.event < events.size() ? events[place.event] : PathEvent{};
 }
 
-Divergence divergence_at(const JudgedSegment& segment, DifferenceClass difference_class) {
+Divergence divergence_at(const ClassifiedSegment& segment, DifferenceClass difference_class) {
   Divergence divergence{.difference_class = difference_class,
                         .segment = segment.a.empty() ? 0 : segment.a.front().segment(),
                         .event_index = segment.first_event + segment.place.event,
@@ -33,7 +33,7 @@ Divergence divergence_at(const JudgedSegment& segment, DifferenceClass differenc
   return divergence;
 }
 
-void add(JudgedSegment& segment, DifferenceClass difference_class) {
+void add(ClassifiedSegment& segment, DifferenceClass difference_class) {
   if (difference_class == DifferenceClass::rounding && std::exchange(segment.has_rounding, true)) return;
   Divergence divergence = divergence_at(segment, difference_class);
   divergence.sentence = sentence_of(divergence);
@@ -44,11 +44,8 @@ bool is_answer(const EventField& field, EventKind kind) {
   return kind == EventKind::ray && field.word == word::ray_answer;
 }
 
-/// unit_interval of shaders/random.glsl.
-float unit_interval(std::uint32_t bits) { return static_cast<float>(bits >> 8u) * 0x1p-24f; }
-
 /// Whether both devices did with roulette's number what their own probability says; the probabilities are the same
-/// within rounding, or the segment would have been judged before.
+/// within rounding, or their difference would have been classified before.
 bool is_flipped_roulette(const PathEvent& a, const PathEvent& b) {
   if (a.kind() != EventKind::roulette || a.words[word::roulette_bits] != b.words[word::roulette_bits]) return false;
   const auto follows_rule = [](const PathEvent& event) {
@@ -60,11 +57,11 @@ bool is_flipped_roulette(const PathEvent& a, const PathEvent& b) {
 
 }  // namespace
 
-bool has_state(const JudgedSegment& segment) {
+bool has_state(const ClassifiedSegment& segment) {
   return !segment.a.empty() && segment.a.front().kind() == EventKind::segment;
 }
 
-Needed judge(JudgedSegment& segment, const pathtracer::Scene& scene, const Variations* variations) {
+Pending classify_segment(ClassifiedSegment& segment, const pathtracer::Scene& scene, const Variations* variations) {
   while (const std::optional<EventPlace> found = next_difference(segment.a, segment.b, segment.place)) {
     segment.place = *found;
     const EventField* const field = field_at(segment.a, segment.b, *found);
@@ -81,18 +78,18 @@ Needed judge(JudgedSegment& segment, const pathtracer::Scene& scene, const Varia
       go_on();
       continue;
     }
-    if (field && is_answer(*field, a.kind())) return Needed::arbiter;
+    if (field && is_answer(*field, a.kind())) return Pending::arbiter;
     if (field && field->word == word::roulette_survives && is_flipped_roulette(a, b)) {
       add(segment, DifferenceClass::flipped_decision);
-      return Needed::nothing;
+      return Pending::nothing;
     }
-    // What no state decides, and what b has not written down, rounding cannot excuse.
+    // Rounding cannot explain what depends on no state, nor what b has not recorded.
     if (!has_state(segment) || found->event == 0 || found->event >= segment.b.size() ||
         (field && field->type == FieldType::bits)) {
       add(segment, DifferenceClass::mismatch);
-      return Needed::nothing;
+      return Pending::nothing;
     }
-    if (!variations) return Needed::variations;
+    if (!variations) return Pending::variations;
     if (field && field->tier == FieldTier::carried && explains_value(*variations, segment.a, segment.b, *found)) {
       add(segment, DifferenceClass::rounding);
       go_on();
@@ -102,12 +99,12 @@ Needed judge(JudgedSegment& segment, const pathtracer::Scene& scene, const Varia
     add(segment, is_decision && explains_decision(*variations, segment.a, segment.b, *found)
                      ? DifferenceClass::flipped_decision
                      : DifferenceClass::mismatch);
-    return Needed::nothing;
+    return Pending::nothing;
   }
-  return Needed::nothing;
+  return Pending::nothing;
 }
 
-std::vector<Dispute> disputes_of(const JudgedSegment& segment) {
+std::vector<Dispute> disputes_of(const ClassifiedSegment& segment) {
   const PathEvent &a = segment.a[segment.place.event], &b = segment.b[segment.place.event];
   const pathtracer::TracedRay ray_a = pathtracer::ray_of(segment.path, a), ray_b = pathtracer::ray_of(segment.path, b);
   const auto dispute = [&](const pathtracer::TracedRay& ray, std::uint32_t answer_a, std::uint32_t answer_b) {
@@ -118,14 +115,14 @@ std::vector<Dispute> disputes_of(const JudgedSegment& segment) {
   return {dispute(ray_a, ray_a.answer, ray_a.answer), dispute(ray_b, ray_b.answer, ray_b.answer)};
 }
 
-void conclude(JudgedSegment& segment, const pathtracer::Scene& scene, std::span<const Judgement> judgements) {
+void resolve(ClassifiedSegment& segment, const pathtracer::Scene& scene, std::span<const Arbitration> arbitrations) {
   bool tie = true;
-  for (const Judgement& judgement : judgements) tie = tie && judgement.ruling == Ruling::tie;
+  for (const Arbitration& arbitration : arbitrations) tie = tie && arbitration.ruling == Ruling::tie;
   Divergence divergence = divergence_at(segment, DifferenceClass::mismatch);
   const pathtracer::TracedRay ray = pathtracer::ray_of(segment.path, divergence.a);
   const std::uint32_t answer_b = divergence.b.words[word::ray_answer];
   if (tie) divergence.difference_class = class_of_tie(scene, ray, ray.answer, answer_b);
-  divergence.exact_answer = judgements.front().exact_answer;
+  divergence.exact_answer = arbitrations.front().exact_answer;
   divergence.sentence = sentence_of_answers(divergence, scene, segment.path);
   segment.divergences.push_back(std::move(divergence));
 }

@@ -7,9 +7,10 @@
 #include <limits>
 #include <vector>
 
-#include <glm/geometric.hpp>
-
+#include "compare/geometry/distance.hpp"
 #include "compare/geometry/intersection.hpp"
+#include "compare/geometry/primitive.hpp"
+#include "compare/geometry/ray.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -17,24 +18,6 @@ namespace {
 using pathtracer::PathEvent;
 using pathtracer::Scene;
 using pathtracer::TracedRay;
-
-GeometryRay geometry_ray(const TracedRay& ray) {
-  const glm::vec3& o = ray.origin;
-  return {.origin = glm::dvec3(o),
-          .direction = glm::dvec3(ray.direction),
-          .magnitude = std::max({std::abs(o.x), std::abs(o.y), std::abs(o.z)})};
-}
-
-Corners corners_of(const Scene& scene, std::uint32_t triangle) {
-  Corners corners;
-  for (std::size_t i = 0; i < 3; ++i) corners[i] = glm::dvec3(scene.positions[scene.triangles[triangle].vertices[i]]);
-  return corners;
-}
-
-const pathtracer::GpuSphere* sphere_of(const Scene& scene, std::uint32_t answer) {
-  const std::size_t index = std::size_t{answer} - scene.triangles.size();
-  return answer >= scene.triangles.size() && index < scene.spheres.size() ? &scene.spheres[index] : nullptr;
-}
 
 /// Where the ray meets what the answer names; none where nothing is named, or a sphere that moves.
 std::vector<Intersection> intersections_of(const Scene& scene, const TracedRay& ray, std::uint32_t answer) {
@@ -51,24 +34,11 @@ bool lets_through(const Scene& scene, std::uint32_t answer) {
   return answer < scene.triangles.size() && pathtracer::is_transparent(scene, scene.triangles[answer]);
 }
 
-/// The point of the segment that is nearest to the ray's line, by its distance from there.
-double distance_to_segment(const TracedRay& ray, const glm::dvec3& from, const glm::dvec3& to) {
-  const glm::dvec3 origin(ray.origin), along = glm::normalize(glm::dvec3(ray.direction));
-  const auto aside = [&](const glm::dvec3& p) {
-    const glm::dvec3 from_origin = p - origin;
-    return from_origin - glm::dot(from_origin, along) * along;
-  };
-  const glm::dvec3 begin = aside(from), edge = aside(to) - begin;
-  const double squared_length = glm::dot(edge, edge);
-  const double s = squared_length > 0 ? std::clamp(-glm::dot(begin, edge) / squared_length, 0.0, 1.0) : 0.0;
-  return glm::length(begin + s * edge);
-}
-
 double distance_to_outline(const Scene& scene, const TracedRay& ray, std::uint32_t triangle) {
   const Corners corners = corners_of(scene, triangle);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i)
-    least = std::min(least, distance_to_segment(ray, corners[i], corners[(i + 1) % 3]));
+    least = std::min(least, distance_from_line(geometry_ray(ray), corners[i], corners[(i + 1) % 3]));
   return least;
 }
 
@@ -103,10 +73,10 @@ std::string passing_text(const Scene& scene, const TracedRay& ray, std::uint32_t
     }
     if (shared.size() == 2)
       return fmt::format("they share an edge, and it passes {:.1g} from it",
-                         distance_to_segment(ray, shared[0], shared[1]));
+                         distance_from_line(geometry_ray(ray), shared[0], shared[1]));
     if (shared.size() == 1)
       return fmt::format("they share a vertex, and it passes {:.1g} from it",
-                         distance_to_segment(ray, shared[0], shared[0]));
+                         distance_from_line(geometry_ray(ray), shared[0], shared[0]));
   }
   // Of two that do not touch, the one that it barely meets.
   if (!triangle_a && !triangle_b) return {};

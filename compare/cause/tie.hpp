@@ -27,8 +27,9 @@ std::string passing_text(const pathtracer::Scene& scene, const pathtracer::Trace
                          std::uint32_t answer_b);
 
 /// Whether a t or a pair of barycentrics that two devices report of the same hit may both come from rounding: within
-/// the tolerance of the contract, or, where the triangle is far, thin, or seen at a grazing angle, within what 32 units
-/// in the last place of the largest coordinate make of them there (compare/geometry/intersection.hpp).
+/// the tolerance of the contract, or, where the triangle is far, thin, or seen at a grazing angle, within what
+/// tolerated_ulp units in the last place of the largest coordinate make of them there
+/// (compare/geometry/intersection.hpp).
 /// @param scene in device order @param field hit_t or hit_barycentrics of pathtracer::event_word
 bool is_report_within_rounding(const pathtracer::Scene& scene, const pathtracer::PathEvent& a,
                                const pathtracer::PathEvent& b, std::size_t field, double tolerance);

@@ -7,11 +7,13 @@
 
 #include <glm/common.hpp>
 
-namespace tandem::compare {
+#include "compare/geometry/rounding.hpp"
 
-double rounding_distance(double magnitude, double ulp) {
-  return ulp * double{std::numeric_limits<float>::epsilon()} * magnitude;
-}
+// rhi_cpu/trace/exact/bvh.cpp splits the tree of the device cpu-exact in the same way. The two share no code on
+// purpose: the reference tracer of the probes, which uses this one, checks that device too, and a fault that they had
+// in common would stay unseen.
+
+namespace tandem::compare {
 
 BoundingVolumes::BoundingVolumes(std::span<const pathtracer::Bounds> primitives) : order_(primitives.size()) {
   std::iota(order_.begin(), order_.end(), 0u);
@@ -49,14 +51,15 @@ void BoundingVolumes::split(std::uint32_t node, std::uint32_t first, std::uint32
   split(child + 1, first + half, count - half, primitives);
 }
 
-void BoundingVolumes::traverse(const Ray& ray, const std::function<double(std::uint32_t primitive)>& visit) const {
+void BoundingVolumes::traverse(const GeometryRay& ray,
+                               const std::function<double(std::uint32_t primitive)>& visit) const {
   if (order_.empty()) return;
   double bound = std::numeric_limits<double>::infinity();
   const auto meets = [&](const Node& node) {
     double magnitude = ray.magnitude;
     for (int axis = 0; axis < 3; ++axis)
       magnitude = std::max({magnitude, std::abs(node.minimum[axis]), std::abs(node.maximum[axis])});
-    const double margin = rounding_distance(magnitude, ray.ulp);
+    const double margin = rounding_distance(magnitude);
     double enter = -std::numeric_limits<double>::infinity(), leave = -enter;
     for (int axis = 0; axis < 3; ++axis) {
       const double near = node.minimum[axis] - margin - ray.origin[axis];

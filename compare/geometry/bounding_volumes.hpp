@@ -7,6 +7,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "compare/geometry/ray.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::compare {
@@ -16,17 +17,9 @@ class BoundingVolumes {
  public:
   explicit BoundingVolumes(std::span<const pathtracer::Bounds> primitives);
 
-  /// A ray whose rounding in single precision is to be allowed for.
-  struct Ray {
-    glm::dvec3 origin;
-    glm::dvec3 direction;  ///< not 0
-    double magnitude;      ///< of the coordinates that its origin was computed from
-    double ulp;            ///< by how many units in the last place of the largest coordinate it may pass a box
-  };
-
-  /// Calls `visit` with the index of every primitive whose box the ray meets at a t from 0 to the least that a call has
-  /// returned so far, infinity at first; in no order.
-  void traverse(const Ray& ray, const std::function<double(std::uint32_t primitive)>& visit) const;
+  /// Calls `visit` with the index of every primitive whose box the ray meets, within rounding, at a t from 0 to the
+  /// least that a call has returned so far, infinity at first; in no order.
+  void traverse(const GeometryRay& ray, const std::function<double(std::uint32_t primitive)>& visit) const;
 
  private:
   struct Node {
@@ -40,8 +33,5 @@ class BoundingVolumes {
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> order_;
 };
-
-/// How far single precision may put things from where they are when the largest coordinate involved is `magnitude`.
-double rounding_distance(double magnitude, double ulp);
 
 }  // namespace tandem::compare

@@ -8,12 +8,10 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "compare/geometry/bounding_volumes.hpp"
+#include "compare/geometry/rounding.hpp"
 
 namespace tandem::compare {
 namespace {
-
-double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -57,8 +55,8 @@ Projection project(const GeometryRay& ray, const Corners& corners) {
 
 std::optional<Intersection> meet(const GeometryRay& ray, const Corners& corners) {
   double magnitude = ray.magnitude;
-  for (const glm::dvec3& corner : corners) magnitude = std::max(magnitude, largest(corner));
-  const double error = rounding_distance(magnitude, tolerated_ulp);
+  for (const glm::dvec3& corner : corners) magnitude = std::max(magnitude, largest_magnitude(corner));
+  const double error = rounding_distance(magnitude);
   const Projection seen = project(ray, corners);
   if (!seen.inside && !(seen.to_outline <= error)) return std::nullopt;
 
@@ -92,7 +90,7 @@ std::optional<Intersection> meet(const GeometryRay& ray, const Corners& corners)
 std::vector<Intersection> meet(const GeometryRay& ray, const pathtracer::GpuSphere& sphere) {
   const glm::dvec3 centre(sphere.centre), from_centre = ray.origin - centre;
   const double radius = sphere.radius, length = glm::length(ray.direction);
-  const double error = rounding_distance(std::max({ray.magnitude, largest(centre), radius}), tolerated_ulp);
+  const double error = rounding_distance(std::max({ray.magnitude, largest_magnitude(centre), radius}));
   const double t_middle = -glm::dot(from_centre, ray.direction) / (length * length);
   const double distance = glm::length(from_centre + t_middle * ray.direction);
   if (!(distance <= radius + error)) return {};

@@ -12,7 +12,7 @@ namespace {
 
 void require_same_size(const pathtracer::Image& a, const pathtracer::Image& b) {
   if (a.width == b.width && a.height == b.height && a.pixels.size() == b.pixels.size()) return;
-  throw Error("the difference of two images of different sizes was asked for");
+  throw Error("images of different sizes have no difference image");
 }
 
 /// The pixel-by-pixel image of a function of two pixels.

@@ -73,7 +73,7 @@ Vote vote(std::span<const pathtracer::Image> images, double tolerance) {
   Vote result;
   result.pixels = images.front().pixels.size();
   result.devices.resize(count);
-  std::map<std::vector<DeviceIndices>, Tie> ties;
+  std::map<std::vector<DeviceIndices>, SplitVote> splits;
   for (std::size_t index = 0; index < result.pixels; ++index) {
     Values values;
     for (const pathtracer::Image& image : images) values.push_back(image.pixels[index]);
@@ -92,11 +92,11 @@ Vote vote(std::span<const pathtracer::Image> images, double tolerance) {
       continue;
     }
     if (!is_majority(group, count)) {
-      ++result.tied;
+      ++result.undecided;
       std::vector<DeviceIndices> sides = sides_of(values, tolerance);
-      const auto [tie, is_new] = ties.try_emplace(sides);
-      if (is_new) tie->second = {.sides = std::move(sides), .pixels = 0, .first = pixel};
-      ++tie->second.pixels;
+      const auto [split, is_new] = splits.try_emplace(sides);
+      if (is_new) split->second = {.sides = std::move(sides), .pixels = 0, .first = pixel};
+      ++split->second.pixels;
       continue;
     }
     ++result.decided;
@@ -108,8 +108,8 @@ Vote vote(std::span<const pathtracer::Image> images, double tolerance) {
       if (votes.beyond_tolerance++ == 0) votes.first_beyond = pixel;
     }
   }
-  for (auto& [sides, tie] : ties) result.ties.push_back(std::move(tie));
-  std::ranges::stable_sort(result.ties, [](const Tie& a, const Tie& b) { return a.pixels > b.pixels; });
+  for (auto& [sides, split] : splits) result.splits.push_back(std::move(split));
+  std::ranges::stable_sort(result.splits, [](const SplitVote& a, const SplitVote& b) { return a.pixels > b.pixels; });
   return result;
 }
 

@@ -23,22 +23,22 @@ struct DeviceVotes {
 };
 
 /// Pixels in which the devices stood against each other in the same way, without a majority.
-struct Tie {
+struct SplitVote {
   std::vector<DeviceIndices> sides;  ///< devices of a side are within the tolerance of the first of it
   std::uint64_t pixels = 0;
   glm::uvec2 first{0};
 };
 
-/// Every pixel is exactly one of: unanimous, within tolerance, decided, tied.
+/// Every pixel is exactly one of: unanimous, within tolerance, decided, undecided.
 struct Vote {
   std::uint64_t pixels = 0;
   std::uint64_t unanimous = 0;  ///< the same bits on all devices
   std::uint64_t within_tolerance =
       0;                             ///< no majority of equal bits, but every device is within tolerance of all others
   std::uint64_t decided = 0;         ///< a majority stood against the others
-  std::uint64_t tied = 0;            ///< neither
+  std::uint64_t undecided = 0;       ///< neither
   std::vector<DeviceVotes> devices;  ///< one for each
-  std::vector<Tie> ties;             ///< the most frequent first
+  std::vector<SplitVote> splits;     ///< the most frequent first
 };
 
 /// Counts the votes on each pixel. A majority is more than half of the devices: those with the same bits, or, where

@@ -22,9 +22,9 @@ struct EventPair {
   const pathtracer::PathEvent& event() const { return a ? *a : *b; }
 };
 
-/// Pairs events of the same segment and kind (of rays: for the same purpose), as many as that is possible of without
-/// changing their order. All events of both are there once, segment by segment; within a segment each device's in its
-/// own order.
+/// Pairs as many events of the same segment and kind (rays: of the same purpose) as possible without changing their
+/// order. The result has every event of both recordings once, segment by segment, and within a segment in the order
+/// of its own recording.
 std::vector<EventPair> pair_events(std::span<const pathtracer::PathEvent> a, std::span<const pathtracer::PathEvent> b);
 
 /// Whether the field has not the same bits in both, or only one device has the event.

@@ -13,6 +13,7 @@ namespace {
 
 using pathtracer::EventKind;
 using pathtracer::PathEvent;
+namespace word = pathtracer::event_word;
 
 // How far rounding may move what a few operations compute from equal inputs: some 80 units in the last place.
 constexpr double geometric = 1e-5;
@@ -33,95 +34,101 @@ constexpr EventField observed(const char* name, std::size_t word, FieldType type
   return {name, word, type, FieldTier::observed, reported};
 }
 
-constexpr std::array camera = {exact("pixel x", 2, FieldType::count),
-                               exact("pixel y", 3, FieldType::count),
-                               exact("sample", 7, FieldType::count),
-                               carried("time", 11, FieldType::number, geometric),
-                               carried("origin", 4, FieldType::vector3, geometric),
-                               carried("direction", 8, FieldType::vector3, geometric)};
+constexpr std::array camera = {exact("pixel x", word::camera_pixel_x, FieldType::count),
+                               exact("pixel y", word::camera_pixel_y, FieldType::count),
+                               exact("sample", word::camera_sample, FieldType::count),
+                               carried("time", word::camera_time, FieldType::number, geometric),
+                               carried("origin", word::camera_origin, FieldType::vector3, geometric),
+                               carried("direction", word::camera_direction, FieldType::vector3, geometric)};
 
-constexpr std::array segment = {exact("depth", 2, FieldType::count),
-                                exact("crossings", 3, FieldType::count),
-                                exact("medium", 15, FieldType::index),
-                                exact("diffuse count", 23, FieldType::count),
-                                exact("glossy count", 24, FieldType::count),
-                                exact("specular count", 25, FieldType::count),
-                                carried("origin", 4, FieldType::vector3, geometric),
-                                carried("direction", 8, FieldType::vector3, geometric),
-                                carried("throughput", 12, FieldType::color, radiometric),
-                                carried("radiance", 16, FieldType::color, radiometric),
-                                carried("eta_scale", 11, FieldType::number, radiometric),
-                                carried("ray length", 19, FieldType::number, geometric),
-                                carried("previous position", 20, FieldType::vector3, geometric),
-                                carried("previous density", 7, FieldType::number, radiometric)};
+constexpr std::array segment = {
+    exact("depth", word::segment_depth, FieldType::count),
+    exact("crossings", word::segment_crossings, FieldType::count),
+    exact("medium", word::segment_medium, FieldType::index),
+    exact("diffuse count", word::segment_diffuse_count, FieldType::count),
+    exact("glossy count", word::segment_glossy_count, FieldType::count),
+    exact("specular count", word::segment_specular_count, FieldType::count),
+    carried("origin", word::segment_origin, FieldType::vector3, geometric),
+    carried("direction", word::segment_direction, FieldType::vector3, geometric),
+    carried("throughput", word::segment_throughput, FieldType::color, radiometric),
+    carried("radiance", word::segment_radiance, FieldType::color, radiometric),
+    carried("eta_scale", word::segment_eta_scale, FieldType::number, radiometric),
+    carried("ray length", word::segment_ray_length, FieldType::number, geometric),
+    carried("previous position", word::segment_previous_position, FieldType::vector3, geometric),
+    carried("previous density", word::segment_previous_density, FieldType::number, radiometric)};
 
-constexpr std::array ray = {exact("ray kind", 2, FieldType::choice),
-                            exact("dimension", 3, FieldType::count),
-                            carried("origin", 4, FieldType::vector3, geometric),
-                            carried("direction", 8, FieldType::vector3, geometric),
-                            carried("t max", 7, FieldType::number, geometric),
-                            exact("answer", 11, FieldType::index),
-                            exact("hit kind", 12, FieldType::choice),
-                            exact("instance", 13, FieldType::count),
-                            exact("geometry", 14, FieldType::count),
-                            exact("primitive", 15, FieldType::count),
-                            observed("t", 28, FieldType::number),
-                            observed("barycentrics", 29, FieldType::pair)};
+constexpr std::array ray = {exact("ray kind", word::ray_kind, FieldType::choice),
+                            exact("dimension", word::ray_dimension, FieldType::count),
+                            carried("origin", word::ray_origin, FieldType::vector3, geometric),
+                            carried("direction", word::ray_direction, FieldType::vector3, geometric),
+                            carried("t max", word::ray_t_max, FieldType::number, geometric),
+                            exact("answer", word::ray_answer, FieldType::index),
+                            exact("hit kind", word::hit_kind, FieldType::choice),
+                            exact("instance", word::hit_instance, FieldType::count),
+                            exact("geometry", word::hit_geometry, FieldType::count),
+                            exact("primitive", word::hit_primitive, FieldType::count),
+                            observed("t", word::hit_t, FieldType::number),
+                            observed("barycentrics", word::hit_barycentrics, FieldType::pair)};
 
-constexpr std::array surface = {exact("material", 2, FieldType::index),
-                                exact("outside", 3, FieldType::flag),
-                                carried("position", 4, FieldType::vector3, geometric),
-                                carried("geometric normal", 8, FieldType::vector3, geometric),
-                                carried("shading normal", 12, FieldType::vector3, geometric),
-                                carried("offset", 7, FieldType::number, radiometric),
-                                carried("texture coordinates", 16, FieldType::pair, geometric)};
+constexpr std::array surface = {
+    exact("material", word::surface_material, FieldType::index),
+    exact("outside", word::surface_outside, FieldType::flag),
+    carried("position", word::surface_position, FieldType::vector3, geometric),
+    carried("geometric normal", word::surface_geometric_normal, FieldType::vector3, geometric),
+    carried("shading normal", word::surface_shading_normal, FieldType::vector3, geometric),
+    carried("offset", word::surface_offset, FieldType::number, radiometric),
+    carried("texture coordinates", word::surface_texture_coordinates, FieldType::pair, geometric)};
 
-constexpr std::array medium = {exact("random bits", 2, FieldType::bits), exact("random bits 2", 3, FieldType::bits),
-                               exact("scattered", 8, FieldType::flag),
-                               carried("distance", 7, FieldType::number, radiometric),
-                               carried("weight", 4, FieldType::color, radiometric)};
+constexpr std::array medium = {exact("random bits", word::medium_bits, FieldType::bits),
+                               exact("random bits 2", word::medium_bits + 1, FieldType::bits),
+                               exact("scattered", word::medium_scattered, FieldType::flag),
+                               carried("distance", word::medium_distance, FieldType::number, radiometric),
+                               carried("weight", word::medium_weight, FieldType::color, radiometric)};
 
-constexpr std::array emission = {exact("environment", 2, FieldType::flag),
-                                 carried("radiance", 4, FieldType::color, radiometric),
-                                 carried("contribution", 8, FieldType::color, radiometric)};
+constexpr std::array emission = {exact("environment", word::emission_environment, FieldType::flag),
+                                 carried("radiance", word::emission_radiance, FieldType::color, radiometric),
+                                 carried("contribution", word::emission_contribution, FieldType::color, radiometric)};
 
-constexpr std::array light_sample = {exact("random bits", 4, FieldType::bits),
-                                     exact("random bits 2", 5, FieldType::bits),
-                                     exact("random bits 3", 6, FieldType::bits),
-                                     exact("random bits 4", 7, FieldType::bits),
-                                     exact("light", 2, FieldType::index),
-                                     exact("infinite", 3, FieldType::flag),
-                                     carried("target", 16, FieldType::vector3, geometric),
-                                     carried("direction", 8, FieldType::vector3, geometric),
-                                     carried("density", 11, FieldType::number, radiometric),
-                                     carried("radiance", 12, FieldType::color, radiometric)};
+constexpr std::array light_sample = {exact("random bits", word::light_sample_bits, FieldType::bits),
+                                     exact("random bits 2", word::light_sample_bits + 1, FieldType::bits),
+                                     exact("random bits 3", word::light_sample_bits + 2, FieldType::bits),
+                                     exact("random bits 4", word::light_sample_bits + 3, FieldType::bits),
+                                     exact("light", word::light_sample_light, FieldType::index),
+                                     exact("infinite", word::light_sample_infinite, FieldType::flag),
+                                     carried("target", word::light_sample_target, FieldType::vector3, geometric),
+                                     carried("direction", word::light_sample_direction, FieldType::vector3, geometric),
+                                     carried("density", word::light_sample_density, FieldType::number, radiometric),
+                                     carried("radiance", word::light_sample_radiance, FieldType::color, radiometric)};
 
-constexpr std::array light_value = {carried("bsdf", 4, FieldType::color, radiometric),
-                                    carried("bsdf density", 7, FieldType::number, radiometric),
-                                    carried("weight", 11, FieldType::number, radiometric)};
+constexpr std::array light_value = {
+    carried("bsdf", word::light_value_bsdf, FieldType::color, radiometric),
+    carried("bsdf density", word::light_value_bsdf_density, FieldType::number, radiometric),
+    carried("weight", word::light_value_weight, FieldType::number, radiometric)};
 
-constexpr std::array visibility = {carried("visibility", 4, FieldType::color, radiometric)};
+constexpr std::array visibility = {carried("visibility", word::visibility, FieldType::color, radiometric)};
 
-constexpr std::array direct_light = {carried("contribution", 4, FieldType::color, radiometric)};
+constexpr std::array direct_light = {
+    carried("contribution", word::direct_light_contribution, FieldType::color, radiometric)};
 
-constexpr std::array scatter = {exact("random bits", 4, FieldType::bits),
-                                exact("random bits 2", 5, FieldType::bits),
-                                exact("random bits 3", 6, FieldType::bits),
-                                exact("random bits 4", 7, FieldType::bits),
-                                exact("model", 16, FieldType::choice),
-                                exact("lobe", 2, FieldType::choice),
-                                exact("leaves", 3, FieldType::flag),
-                                carried("direction", 8, FieldType::vector3, geometric),
-                                carried("density", 11, FieldType::number, radiometric),
-                                carried("weight", 12, FieldType::color, radiometric),
-                                carried("eta", 15, FieldType::number, geometric)};
+constexpr std::array scatter = {exact("random bits", word::scatter_bits, FieldType::bits),
+                                exact("random bits 2", word::scatter_bits + 1, FieldType::bits),
+                                exact("random bits 3", word::scatter_bits + 2, FieldType::bits),
+                                exact("random bits 4", word::scatter_bits + 3, FieldType::bits),
+                                exact("model", word::scatter_model, FieldType::choice),
+                                exact("lobe", word::scatter_lobe, FieldType::choice),
+                                exact("leaves", word::scatter_leaves, FieldType::flag),
+                                carried("direction", word::scatter_direction, FieldType::vector3, geometric),
+                                carried("density", word::scatter_density, FieldType::number, radiometric),
+                                carried("weight", word::scatter_weight, FieldType::color, radiometric),
+                                carried("eta", word::scatter_eta, FieldType::number, geometric)};
 
-constexpr std::array roulette = {exact("random bits", 3, FieldType::bits),
-                                 carried("survival", 4, FieldType::number, radiometric),
-                                 exact("survives", 2, FieldType::flag)};
+constexpr std::array roulette = {exact("random bits", word::roulette_bits, FieldType::bits),
+                                 carried("survival", word::roulette_survival, FieldType::number, radiometric),
+                                 exact("survives", word::roulette_survives, FieldType::flag)};
 
-constexpr std::array end = {exact("reason", 2, FieldType::choice), exact("rays", 3, FieldType::count),
-                            carried("radiance", 4, FieldType::color, radiometric)};
+constexpr std::array end = {exact("reason", word::end_reason, FieldType::choice),
+                            exact("rays", word::end_ray_count, FieldType::count),
+                            carried("radiance", word::end_radiance, FieldType::color, radiometric)};
 
 bool is_real(FieldType type) {
   return type == FieldType::number || type == FieldType::vector3 || type == FieldType::color || type == FieldType::pair;
@@ -211,19 +218,21 @@ std::size_t word_count(FieldType type) {
   }
 }
 
+float unit_interval(std::uint32_t bits) { return static_cast<float>(bits >> 8u) * 0x1p-24f; }
+
 std::string field_text(const EventField& field, const PathEvent& event) {
-  const std::uint32_t word = event.words[field.word];
+  const std::uint32_t value = event.words[field.word];
   switch (field.type) {
     case FieldType::index:
-      return word == 0xffffffffu ? std::string("none") : fmt::format("{}", word);
+      return value == 0xffffffffu ? std::string("none") : fmt::format("{}", value);
     case FieldType::count:
-      return fmt::format("{}", word);
+      return fmt::format("{}", value);
     case FieldType::bits:
-      return fmt::format("{:08x}", word);
+      return fmt::format("{:08x}", value);
     case FieldType::flag:
-      return word != 0 ? "yes" : "no";
+      return value != 0 ? "yes" : "no";
     case FieldType::choice:
-      return choice_text(field.name, word);
+      return choice_text(field.name, value);
     default:
       break;
   }

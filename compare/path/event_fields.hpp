@@ -48,6 +48,9 @@ const char* name(pathtracer::EventKind kind);
 /// How many words a field has.
 std::size_t word_count(FieldType type);
 
+/// The number in [0, 1) that a path tracer makes of random bits: unit_interval of shaders/random.glsl.
+float unit_interval(std::uint32_t bits);
+
 /// The value for people: "0.25, 0.5, 1", "triangle 12"-like names only where the event says so (choices), "none" for
 /// 2^32 - 1.
 std::string field_text(const EventField& field, const pathtracer::PathEvent& event);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "compare/geometry/rounding.hpp"
+
 namespace tandem::compare {
 namespace {
 
@@ -47,10 +49,10 @@ bool is_right_element(const AffineMap& map, std::size_t element, double value) {
   double magnitude = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) magnitude = std::max(magnitude, std::abs(map.linear[j][i]));
-  if (column < 3) return is_within(value, map.linear[column][row], rounding_distance(magnitude, tolerated_ulp));
+  if (column < 3) return is_within(value, map.linear[column][row], rounding_distance(magnitude));
   // The translation of one is that of the other, mapped.
   magnitude = std::max(mapped_magnitude(map, inverse(map).translation), mapped_magnitude(map, glm::dvec3(0)));
-  return is_within(value, map.translation[row], rounding_distance(magnitude, tolerated_ulp));
+  return is_within(value, map.translation[row], rounding_distance(magnitude));
 }
 
 /// Whether a field of an answer with the right primitive has a value that it may have.
@@ -87,13 +89,12 @@ bool is_right_field(std::span<const ProbeInstance> instances, const ProbeRay& ra
     const glm::dvec3 direction(ray.direction);
     const auto axis = static_cast<int>(index_in(offsetof(ProbeAnswer, object_direction)));
     return is_within(value, to_object.point(direction)[axis],
-                     rounding_distance(mapped_magnitude(to_object, direction), tolerated_ulp));
+                     rounding_distance(mapped_magnitude(to_object, direction)));
   }
   if (field.offset >= offsetof(ProbeAnswer, object_origin)) {
     const glm::dvec3 origin(ray.origin);
     const auto axis = static_cast<int>(index_in(offsetof(ProbeAnswer, object_origin)));
-    return is_within(value, to_object.point(origin)[axis],
-                     rounding_distance(mapped_magnitude(to_object, origin), tolerated_ulp));
+    return is_within(value, to_object.point(origin)[axis], rounding_distance(mapped_magnitude(to_object, origin)));
   }
   const std::size_t coordinate = index_in(offsetof(ProbeAnswer, barycentrics));
   return is_triangle
@@ -126,11 +127,11 @@ bool differ(const Trial& trial, const ProbeAnswer& a, const ProbeAnswer& b) {
   return std::memcmp(&a, &b, sizeof(a)) != 0 && !(trial.any_hit && is_hit(a) && is_hit(b));
 }
 
-AnswerJudgement judge(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray,
-                      std::span<const ProbeHit> hits, const ProbeAnswer& a, const ProbeAnswer& b) {
+AnswerCheck check_answers(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray,
+                          std::span<const ProbeHit> hits, const ProbeAnswer& a, const ProbeAnswer& b) {
   const ProbeHit* const hit_a = find(hits, a);
   const ProbeHit* const hit_b = find(hits, b);
-  AnswerJudgement judgement;
+  AnswerCheck check;
   for (const ProbeField& field : probe_fields()) {
     if (bits_of(a, field) == bits_of(b, field)) continue;
     bool right_a = false, right_b = false;
@@ -146,14 +147,14 @@ AnswerJudgement judge(const Trial& trial, std::span<const ProbeInstance> instanc
       if (field.kind == ProbeField::Kind::flag || hit_a != hit_b) tie = DifferenceClass::edge_or_vertex_tie;
     }
     const Ruling ruling = ruling_of(right_a, right_b);
-    const AnswerJudgement found = {
+    const AnswerCheck found = {
         .kind = ruling == Ruling::tie ? tie : DifferenceClass::mismatch, .field = &field, .ruling = ruling};
-    if (!judgement.field) judgement = found;
+    if (!check.field) check = found;
     if (found.kind == DifferenceClass::rounding) continue;
     // Answers that name different primitives differ in everything else, too.
     return found;
   }
-  return judgement;
+  return check;
 }
 
 bool is_right(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray,

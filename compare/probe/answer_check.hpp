@@ -13,7 +13,7 @@
 namespace tandem::compare {
 
 /// What is to be said of two answers to a ray.
-struct AnswerJudgement {
+struct AnswerCheck {
   DifferenceClass kind = DifferenceClass::rounding;
   const ProbeField* field = nullptr;  ///< the first that differs by more than rounding, else the first that differs
   Ruling ruling = Ruling::tie;
@@ -22,15 +22,15 @@ struct AnswerJudgement {
 /// Whether two answers have different bits; where a trial leaves it open what is hit, whether one hits and one misses.
 bool differ(const Trial& trial, const ProbeAnswer& a, const ProbeAnswer& b);
 
-/// Judges two answers that differ. Ids and flags may do so only where rounding decides which primitive is met; numbers
+/// Checks two answers that differ. Ids and flags may do so only where rounding decides which primitive is met; numbers
 /// by what single precision, 32 units in the last place of the largest coordinate involved, does to them: t by as much
 /// as that moves the point where the ray meets the surface, barycentrics by the same over the triangle's height, both
 /// more the flatter the ray meets it.
 /// @param hits what the reference finds of the ray
-AnswerJudgement judge(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray,
-                      std::span<const ProbeHit> hits, const ProbeAnswer& a, const ProbeAnswer& b);
+AnswerCheck check_answers(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray,
+                          std::span<const ProbeHit> hits, const ProbeAnswer& a, const ProbeAnswer& b);
 
-/// Whether a device may give this answer. @param hits as for judge
+/// Whether a device may give this answer. @param hits as for check_answers
 bool is_right(const Trial& trial, std::span<const ProbeInstance> instances, const ProbeRay& ray,
               std::span<const ProbeHit> hits, const ProbeAnswer& answer);
 

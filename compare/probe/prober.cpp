@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "probe_shaders/spirv.hpp"
+#include "rhi/transfer.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -14,10 +15,6 @@ struct TrialConstants {
   std::uint32_t acceptance;
   std::uint32_t ray_count;
 };
-
-rhi::BufferHandle create_storage(rhi::Device& device, std::uint64_t size, const std::string& label) {
-  return device.create_buffer({.size = size, .usage = rhi::BufferUsage::storage, .label = label});
-}
 
 /// Two hit records for triangles and two for spheres, each with its number: hit_record says which an instance names.
 rhi::ShaderTableHandle create_table(rhi::Device& device) {
@@ -72,8 +69,11 @@ bool Prober::supports(const Trial& trial) const {
 
 std::vector<ProbeAnswer> Prober::answer(const Trial& trial, std::span<const ProbeRay> rays) {
   const auto ray_count = static_cast<std::uint32_t>(rays.size());
-  const rhi::BufferHandle ray_buffer = create_storage(device_, rays.size_bytes(), "probe: rays");
-  const rhi::BufferHandle answer_buffer = create_storage(device_, rays.size() * sizeof(ProbeAnswer), "probe: answers");
+  const rhi::CommandListHandle list = device_.create_command_list(std::string("probe: ") + trial.name);
+  const rhi::BufferHandle ray_buffer =
+      rhi::create_filled(device_, *list, rays, rhi::BufferUsage::storage, "probe: rays");
+  const rhi::BufferHandle answer_buffer = device_.create_buffer(
+      {.size = rays.size() * sizeof(ProbeAnswer), .usage = rhi::BufferUsage::storage, .label = "probe: answers"});
   const rhi::BindGroupHandle group =
       device_.create_bind_group({.pipeline = pipeline_,
                                  .set = 0,
@@ -84,8 +84,6 @@ std::vector<ProbeAnswer> Prober::answer(const Trial& trial, std::span<const Prob
                                  .label = "probe"});
   const TrialConstants constants = {trial.flags, trial.mask, trial.acceptance, ray_count};
   const std::span<const std::byte> push_constants = std::as_bytes(std::span(&constants, 1));
-  const rhi::CommandListHandle list = device_.create_command_list(std::string("probe: ") + trial.name);
-  list->upload(ray_buffer, 0, std::as_bytes(rays));
   // What no invocation writes is no answer.
   list->fill({answer_buffer}, static_cast<std::uint32_t>(AnswerType::missing));
   if (form_ == pathtracer::TracingMode::query) {
@@ -103,9 +101,7 @@ std::vector<ProbeAnswer> Prober::answer(const Trial& trial, std::span<const Prob
     list->trace_rays(desc);
   }
   device_.submit(list)->wait();
-  std::vector<ProbeAnswer> answers(rays.size());
-  device_.download(answer_buffer, 0, std::as_writable_bytes(std::span(answers)));
-  return answers;
+  return rhi::read<ProbeAnswer>(device_, answer_buffer, rays.size());
 }
 
 }  // namespace tandem::compare

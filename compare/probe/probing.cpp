@@ -53,22 +53,22 @@ Probing probe(rhi::Device& a, rhi::Device& b, const pathtracer::Scene& scene, st
         continue;
       }
       const std::vector<ProbeHit> hits = reference.hits(trial, instances, asked[i]);
-      const AnswerJudgement judgement = judge(trial, instances, asked[i], hits, answers_a[i], answers_b[i]);
-      ++summary.classes[index_of(judgement.kind)];
-      if (judgement.kind == DifferenceClass::rounding) continue;
-      const std::uint32_t bits_a = bits_of(answers_a[i], *judgement.field);
-      const std::uint32_t bits_b = bits_of(answers_b[i], *judgement.field);
-      const bool is_number = judgement.field->kind == ProbeField::Kind::number;
+      const AnswerCheck check = check_answers(trial, instances, asked[i], hits, answers_a[i], answers_b[i]);
+      ++summary.classes[index_of(check.kind)];
+      if (check.kind == DifferenceClass::rounding) continue;
+      const std::uint32_t bits_a = bits_of(answers_a[i], *check.field);
+      const std::uint32_t bits_b = bits_of(answers_b[i], *check.field);
+      const bool is_number = check.field->kind == ProbeField::Kind::number;
       probing.differences.push_back(
           {.path = askable[i].path,
            .ray_index = askable[i].index,
            .trial = trial.name,
-           .field = judgement.field,
+           .field = check.field,
            .a = bits_a,
            .b = bits_b,
            .ulp = is_number ? ulp_distance(std::bit_cast<float>(bits_a), std::bit_cast<float>(bits_b)) : 0,
-           .kind = judgement.kind,
-           .ruling = judgement.ruling});
+           .kind = check.kind,
+           .ruling = check.ruling});
     }
     probing.trials.push_back(summary);
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include "pathtracer/render/path_recorder.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -40,11 +41,11 @@ void cut(ProbeRay& ray, Window window, const Intersection& first) {
 
 }  // namespace
 
-std::vector<PathRay> path_rays(pathtracer::Renderer& renderer, std::size_t count) {
+std::vector<PathRay> path_rays(pathtracer::SceneOnDevice& scene, std::size_t count) {
   // A few rays of each of many paths, so that there are rays of every bounce.
   constexpr std::size_t rays_of_path = 4;
   constexpr std::size_t most_at_once = 4096;  // paths, whose events are in memory together
-  const glm::uvec2 size(renderer.settings().width, renderer.settings().height);
+  const glm::uvec2 size(scene.settings().width, scene.settings().height);
   const std::size_t pixel_count = std::size_t{size.x} * size.y;
   const std::size_t path_count = std::min(pixel_count, (count + rays_of_path - 1) / rays_of_path);
   std::vector<pathtracer::PathStart> starts;
@@ -55,7 +56,7 @@ std::vector<PathRay> path_rays(pathtracer::Renderer& renderer, std::size_t count
   std::vector<PathRay> rays;
   for (std::size_t first = 0; first < starts.size(); first += most_at_once) {
     const auto some = std::span(starts).subspan(first, std::min(most_at_once, starts.size() - first));
-    const std::vector<pathtracer::PathEvents> events = renderer.record_paths(some);
+    const std::vector<pathtracer::PathEvents> events = pathtracer::record_paths(scene, some);
     for (std::size_t i = 0; i < some.size(); ++i) {
       const std::vector<pathtracer::TracedRay> of_path = pathtracer::rays_of(some[i].path, events[i]);
       for (std::uint32_t index = 0; index < of_path.size(); ++index)

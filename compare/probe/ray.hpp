@@ -7,7 +7,7 @@
 #include "compare/probe/reference.hpp"
 #include "compare/probe/trial.hpp"
 #include "pathtracer/render/path_event.hpp"
-#include "pathtracer/render/renderer.hpp"
+#include "pathtracer/render/scene_on_device.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::compare {
@@ -20,7 +20,7 @@ struct PathRay {
 };
 
 /// At most `count` rays of the paths that sample 0 of pixels all over the picture takes on the renderer's device.
-std::vector<PathRay> path_rays(pathtracer::Renderer& renderer, std::size_t count);
+std::vector<PathRay> path_rays(pathtracer::SceneOnDevice& scene, std::size_t count);
 
 /// Whether a probe can ask the ray: finite, with a direction.
 bool is_askable(const pathtracer::TracedRay& ray);

@@ -136,12 +136,7 @@ std::vector<ProbeHit> ProbeReference::hits(const Trial& trial, std::span<const P
       }
       return bound;
     };
-    (instance.spheres ? spheres_ : triangles_)
-        .traverse({.origin = in_geometry.origin,
-                   .direction = in_geometry.direction,
-                   .magnitude = in_geometry.magnitude,
-                   .ulp = tolerated_ulp},
-                  visit);
+    (instance.spheres ? spheres_ : triangles_).traverse(in_geometry, visit);
   }
   std::erase_if(hits, [&](const ProbeHit& hit) { return hit.intersection.t_low > bound; });
   return hits;
@@ -150,9 +145,7 @@ std::vector<ProbeHit> ProbeReference::hits(const Trial& trial, std::span<const P
 std::vector<Intersection> ProbeReference::meet_primitive(const GeometryRay& ray, const ProbeInstance& instance,
                                                          std::uint32_t index) const {
   if (instance.spheres) return meet(ray, scene_.spheres[index]);
-  Corners corners;
-  for (std::size_t i = 0; i < 3; ++i) corners[i] = glm::dvec3(scene_.positions[scene_.triangles[index].vertices[i]]);
-  std::optional<Intersection> intersection = meet(ray, corners);
+  std::optional<Intersection> intersection = meet(ray, corners_of(scene_, index));
   if (!intersection) return {};
   const bool flipped = rhi::has(instance.flags, rhi::InstanceFlags::triangle_flip_facing);
   if (intersection->front_face && flipped != instance.mirrored_at_build)

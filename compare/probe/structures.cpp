@@ -1,11 +1,13 @@
 #include "compare/probe/structures.hpp"
 
-#include <span>
 #include <string>
 #include <utility>
 
 #include <glm/common.hpp>
 #include <glm/vec4.hpp>
+
+#include "rhi/build.hpp"
+#include "rhi/transfer.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -19,12 +21,7 @@ template <typename T>
 rhi::BufferHandle store(rhi::Device& device, const std::vector<T>& values, BufferUsage usage,
                         const std::string& label) {
   if (values.empty()) return nullptr;
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
-  rhi::BufferHandle buffer = device.create_buffer({.size = bytes.size(), .usage = usage, .label = label});
-  const rhi::CommandListHandle list = device.create_command_list("upload of " + label);
-  list->upload(buffer, 0, bytes);
-  device.submit(list)->wait();
-  return buffer;
+  return rhi::create_filled(device, values, usage, label);
 }
 
 template <typename T>
@@ -98,8 +95,10 @@ ProbeStructures::ProbeStructures(rhi::Device& device, const pathtracer::Scene& s
   if (spheres.empty()) spheres.emplace_back(0);
   spheres_ = store(device, spheres, BufferUsage::storage, "probe: spheres");
   if (!scene.triangles.empty())
-    plain_.push_back(build(triangles(positions_, true, nullptr, rhi::BuildFlags::prefer_fast_trace)));
-  if (!scene.spheres.empty()) plain_.push_back(build(this->spheres(boxes_, rhi::BuildFlags::prefer_fast_trace)));
+    plain_.push_back(
+        rhi::build_bottom_level(device, triangles(positions_, true, nullptr, rhi::BuildFlags::prefer_fast_trace)));
+  if (!scene.spheres.empty())
+    plain_.push_back(rhi::build_bottom_level(device, this->spheres(boxes_, rhi::BuildFlags::prefer_fast_trace)));
 }
 
 rhi::BottomLevelDesc ProbeStructures::triangles(const rhi::BufferHandle& positions, bool indexed,
@@ -144,17 +143,11 @@ rhi::BottomLevelDesc ProbeStructures::spheres(const rhi::BufferHandle& boxes, rh
   return desc;
 }
 
-rhi::AccelerationStructureHandle ProbeStructures::build(const rhi::BottomLevelDesc& desc) const {
-  rhi::AccelerationStructureHandle structure = device_.create_bottom_level(desc);
-  const rhi::CommandListHandle list = device_.create_command_list("build of " + desc.label);
-  list->build_bottom_level(structure, desc);
-  device_.submit(list)->wait();
-  return structure;
-}
-
 std::vector<rhi::AccelerationStructureHandle> ProbeStructures::bottom_levels(InstanceSetup instance_setup) const {
   std::vector<rhi::AccelerationStructureHandle> structures;
-  const auto add = [&](const rhi::BottomLevelDesc& desc) { structures.push_back(build(desc)); };
+  const auto add = [&](const rhi::BottomLevelDesc& desc) {
+    structures.push_back(rhi::build_bottom_level(device_, desc));
+  };
   const bool has_triangles = !scene_.triangles.empty(), has_spheres = !scene_.spheres.empty();
   switch (instance_setup) {
     case InstanceSetup::refitted: {

@@ -32,7 +32,6 @@ class ProbeStructures {
   rhi::BottomLevelDesc triangles(const rhi::BufferHandle& positions, bool indexed, const rhi::BufferHandle& transform,
                                  rhi::BuildFlags flags) const;
   rhi::BottomLevelDesc spheres(const rhi::BufferHandle& boxes, rhi::BuildFlags flags) const;
-  rhi::AccelerationStructureHandle build(const rhi::BottomLevelDesc& desc) const;
   std::vector<rhi::AccelerationStructureHandle> bottom_levels(InstanceSetup instance_setup) const;
   Built build(InstanceSetup instance_setup);
 

@@ -2,10 +2,10 @@
 
 #include <zlib.h>
 
-#include <array>
 #include <stdexcept>
-#include <string_view>
 #include <vector>
+
+#include "base/base64.hpp"
 
 namespace tandem::compare {
 namespace {
@@ -19,22 +19,12 @@ std::vector<std::uint8_t> compressed(std::span<const std::uint8_t> bytes) {
   return result;
 }
 
-std::string base64(std::span<const std::uint8_t> bytes) {
-  static constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = (group << 8) | (k < count ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? digits[(group >> (18 - 6 * k)) & 63u] : '=';
-  }
-  return text;
-}
-
 }  // namespace
 
-std::string packed(std::span<const std::uint8_t> bytes) { return base64(compressed(bytes)); }
+std::string packed(std::span<const std::uint8_t> bytes) {
+  const std::vector<std::uint8_t> small = compressed(bytes);
+  return base64(std::as_bytes(std::span(small)));
+}
 
 std::string packed(const std::string& text) { return packed(std::vector<std::uint8_t>(text.begin(), text.end())); }
 

@@ -37,7 +37,7 @@ RenderSettings render_settings(const Method& method, const StudySettings& study,
 struct Work {
   pathtracer::Renderer& renderer;
   const StudySettings& settings;
-  const pathtracer::Progress& progress;
+  const Progress& progress;
   double total = 0;  ///< samples per pixel of the whole study
   double done = 0;
 
@@ -131,7 +131,7 @@ std::optional<double> SampleRatio::ratio() const {
 
 std::optional<SceneResult> study_scene(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
                                        const std::vector<Method>& methods, const StudySettings& settings,
-                                       bool compares_thesis, const pathtracer::Progress& progress) {
+                                       bool compares_thesis, const Progress& progress) {
   Method reference_method = best_method();
   RenderSettings reference_settings = render_settings(reference_method, settings, settings.reference_samples);
   reference_settings.seed = reference_seed;

@@ -76,6 +76,6 @@ struct SceneResult {
 /// @param compares_thesis whether to measure the sample ratio too
 std::optional<SceneResult> study_scene(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
                                        const std::vector<Method>& methods, const StudySettings& settings,
-                                       bool compares_thesis, const pathtracer::Progress& progress = {});
+                                       bool compares_thesis, const Progress& progress = {});
 
 }  // namespace tandem::study

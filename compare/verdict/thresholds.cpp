@@ -45,7 +45,7 @@ Thresholds::Thresholds()
              {RuleMetric::mean_difference, 1e-4,
               "paths that took another course are noise of both signs and average out; a systematic difference does "
               "not"},
-             {RuleMetric::non_finite, 0, "correct shaders make none"},
+             {RuleMetric::non_finite, 0, "correct shaders produce none"},
              {RuleMetric::mismatches, 0, "a difference must be explained by rounding, or a device is wrong"},
              {RuleMetric::bias_p_value, 1e-4, "one false alarm in ten thousand comparisons"}}) {}
 

@@ -26,8 +26,8 @@ enum class RuleMetric {
   bit_equal,        ///< least fraction of bit-equal pixels; tier tolerance (tier exact asks for all of them)
   mean_difference,  ///< largest |mean_a - mean_b| / max(|mean_a|, |mean_b|); tier tolerance
   non_finite,       ///< most pixels of either image with a NaN or an infinity; every tier
-  mismatches,       ///< most paths, and most answers to probes, that differ without an excuse; every tier
-  bias_p_value      ///< least p-value of a test for bias, which is the rate of its false alarms; tier statistical
+  mismatches,   ///< maximum of paths, and of answers to probes, that differ beyond what rounding explains; every tier
+  bias_p_value  ///< least p-value of a test for bias, which is the rate of its false alarms; tier statistical
 };
 std::span<const Named<RuleMetric>> rule_metric_names();
 const char* name(RuleMetric metric);

@@ -10,9 +10,9 @@ namespace tandem::compare {
 namespace {
 
 /// Collects the sentences of the rules that do not hold.
-class Judge {
+class RuleCheck {
  public:
-  explicit Judge(const Thresholds& thresholds) : thresholds_(thresholds) {}
+  explicit RuleCheck(const Thresholds& thresholds) : thresholds_(thresholds) {}
 
   std::vector<std::string> reasons() && { return std::move(reasons_); }
 
@@ -25,9 +25,9 @@ class Judge {
 
   void check_exact(const Metrics& metrics) {
     const double different = std::round((1.0 - metrics.bit_equal) * static_cast<double>(metrics.pixels));
-    require(
-        metrics.bit_equal == 1.0,
-        fmt::format("{:.0f} of {} pixels do not have the same bits; tier exact wants all.", different, metrics.pixels));
+    require(metrics.bit_equal == 1.0,
+            fmt::format("{:.0f} of {} pixels do not have the same bits; tier exact requires all to.", different,
+                        metrics.pixels));
   }
 
   void check_tolerance(const Metrics& metrics) {
@@ -46,15 +46,12 @@ class Judge {
     if (findings.empty()) throw std::invalid_argument("a statistical verdict needs a test");
     const double least = thresholds_.limit(RuleMetric::bias_p_value);
     for (const BiasFinding& finding : findings)
-      require(finding.p_value >= least, fmt::format("{}: chance alone would do that with probability {:.2g}, and {:g} "
-                                                    "is the least that passes for chance.",
-                                                    finding.sentence, finding.p_value, least));
+      require(finding.p_value >= least,
+              fmt::format("{}: the p-value is {:.2g}, the minimum is {:g}.", finding.sentence, finding.p_value, least));
   }
 
  private:
-  static std::string count_text(double count) {
-    return count == 0 ? std::string("none") : fmt::format("{:.0f}", count);
-  }
+  static std::string count_text(double count) { return fmt::format("{:.0f}", count); }
 
   void require(bool holds, std::string otherwise) {
     if (!holds) reasons_.push_back(std::move(otherwise));
@@ -62,15 +59,15 @@ class Judge {
 
   void check_finite(char image, std::uint64_t count) {
     const double most = thresholds_.limit(RuleMetric::non_finite);
-    require(
-        static_cast<double>(count) <= most,
-        fmt::format("Image {} has {} pixels with a NaN or an infinity; {} may have.", image, count, count_text(most)));
+    require(static_cast<double>(count) <= most,
+            fmt::format("Image {} has {} pixels with a NaN or an infinity; the limit is {}.", image, count,
+                        count_text(most)));
   }
 
   void check_mismatches(std::uint64_t count, const char* one, const char* several) {
     const double most = thresholds_.limit(RuleMetric::mismatches);
-    require(static_cast<double>(count) <= most,
-            fmt::format("{} {} without an excuse; {} may.", count, count == 1 ? one : several, count_text(most)));
+    require(static_cast<double>(count) <= most, fmt::format("{} {} beyond what rounding explains; the limit is {}.",
+                                                            count, count == 1 ? one : several, count_text(most)));
   }
 
   void check_fraction(RuleMetric metric, double fraction, const char* what) {
@@ -85,21 +82,21 @@ class Judge {
 
 }  // namespace
 
-Verdict judge(const Evidence& evidence, const Thresholds& thresholds) {
-  Judge judge(thresholds);
-  judge.check_counts(evidence);
+Verdict make_verdict(const Evidence& evidence, const Thresholds& thresholds) {
+  RuleCheck rules(thresholds);
+  rules.check_counts(evidence);
   switch (thresholds.tier) {
     case Tier::exact:
-      judge.check_exact(evidence.metrics);
+      rules.check_exact(evidence.metrics);
       break;
     case Tier::tolerance:
-      judge.check_tolerance(evidence.metrics);
+      rules.check_tolerance(evidence.metrics);
       break;
     case Tier::statistical:
-      judge.check_bias(evidence.bias);
+      rules.check_bias(evidence.bias);
       break;
   }
-  Verdict verdict{.tier = thresholds.tier, .agree = false, .reasons = std::move(judge).reasons()};
+  Verdict verdict{.tier = thresholds.tier, .agree = false, .reasons = std::move(rules).reasons()};
   verdict.agree = verdict.reasons.empty();
   return verdict;
 }

@@ -19,8 +19,8 @@ struct BiasFinding {
 /// What a verdict is made from.
 struct Evidence {
   Metrics metrics;
-  std::optional<std::uint64_t> mismatches = {};  ///< paths whose difference has no excuse; absent: none was classified
-  std::vector<BiasFinding> bias = {};            ///< tier statistical: not empty
+  std::optional<std::uint64_t> mismatches = {};        ///< paths of class mismatch; absent: none was classified
+  std::vector<BiasFinding> bias = {};                  ///< tier statistical: not empty
   std::optional<std::uint64_t> probe_mismatches = {};  ///< answers to probes likewise; absent: nothing was probed
 };
 
@@ -31,7 +31,7 @@ struct Verdict {
 };
 
 /// Holds the evidence to the rules of the tier. Throws std::invalid_argument for tier statistical without a test.
-Verdict judge(const Evidence& evidence, const Thresholds& thresholds = {});
+Verdict make_verdict(const Evidence& evidence, const Thresholds& thresholds = {});
 
 /// "agree" or "differ".
 const char* name(const Verdict& verdict);

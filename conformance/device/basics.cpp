@@ -34,31 +34,31 @@ void submit(rhi::Device& device, const std::function<void(rhi::CommandList&)>& r
 void add_buffer_cases(const Group& group) {
   group.add("upload_and_download", "a buffer holds what was uploaded", [](Context& context) {
     const rhi::BufferHandle buffer = buffer_of(context.device(), counted(1000), "words");
-    check_words(contents<std::uint32_t>(context.device(), buffer, 1000), counted(1000));
+    check_words(rhi::read<std::uint32_t>(context.device(), buffer, 1000), counted(1000));
   });
   group.add("upload_offset", "an upload at an offset leaves the rest as it was", [](Context& context) {
     rhi::Device& device = context.device();
     const rhi::BufferHandle buffer = buffer_of(device, counted(8), "words");
     const Words two = {100, 101};
     submit(device, [&](rhi::CommandList& list) { list.upload(buffer, 12, std::as_bytes(std::span(two))); });
-    check_words(contents<std::uint32_t>(device, buffer, 8), {0, 1, 2, 100, 101, 5, 6, 7});
+    check_words(rhi::read<std::uint32_t>(device, buffer, 8), {0, 1, 2, 100, 101, 5, 6, 7});
   });
   group.add("download_offset", "a download may begin inside a buffer", [](Context& context) {
     const rhi::BufferHandle buffer = buffer_of(context.device(), counted(8), "words");
-    check_words(contents<std::uint32_t>(context.device(), buffer, 3, 16), {4, 5, 6});
+    check_words(rhi::read<std::uint32_t>(context.device(), buffer, 3, 16), {4, 5, 6});
   });
   group.add("copy", "a copy moves a range to another offset of another buffer", [](Context& context) {
     rhi::Device& device = context.device();
     const rhi::BufferHandle source = buffer_of(device, counted(8), "source");
     const rhi::BufferHandle destination = buffer_of(device, Words(8, 9), "destination");
     submit(device, [&](rhi::CommandList& list) { list.copy({source, 8, 12}, {destination, 16, 12}); });
-    check_words(contents<std::uint32_t>(device, destination, 8), {9, 9, 9, 9, 2, 3, 4, 9});
+    check_words(rhi::read<std::uint32_t>(device, destination, 8), {9, 9, 9, 9, 2, 3, 4, 9});
   });
   group.add("fill", "a fill writes its word over the range and no further", [](Context& context) {
     rhi::Device& device = context.device();
     const rhi::BufferHandle buffer = buffer_of(device, Words(6, 1), "words");
     submit(device, [&](rhi::CommandList& list) { list.fill({buffer, 4, 12}, 0xdeadbeef); });
-    check_words(contents<std::uint32_t>(device, buffer, 6), {1, 0xdeadbeef, 0xdeadbeef, 0xdeadbeef, 1, 1});
+    check_words(rhi::read<std::uint32_t>(device, buffer, 6), {1, 0xdeadbeef, 0xdeadbeef, 0xdeadbeef, 1, 1});
   });
   group.add("order", "a command sees what the one before it wrote", [](Context& context) {
     rhi::Device& device = context.device();
@@ -71,7 +71,7 @@ void add_buffer_cases(const Group& group) {
       list.fill({first}, 7);
       list.copy({first, 0, 4}, {second, 0, 4});
     });
-    check_words(contents<std::uint32_t>(device, second, 4), {7, 2, 3, 4});
+    check_words(rhi::read<std::uint32_t>(device, second, 4), {7, 2, 3, 4});
   });
   group.add("upload_copies", "an upload keeps the bytes that it was given when it was recorded", [](Context& context) {
     rhi::Device& device = context.device();
@@ -81,7 +81,7 @@ void add_buffer_cases(const Group& group) {
       list.upload(buffer, 0, std::as_bytes(std::span(words)));
       words = {3, 4};
     });
-    check_words(contents<std::uint32_t>(device, buffer, 2), {1, 2});
+    check_words(rhi::read<std::uint32_t>(device, buffer, 2), {1, 2});
   });
 }
 
@@ -120,7 +120,7 @@ void add_compute_cases(const Group& group) {
     const rhi::BufferHandle source = buffer_of(device, counted(64), "source");
     const rhi::BufferHandle destination = buffer_of(device, Words(64), "destination");
     submit(device, [&](rhi::CommandList& list) { dispatch(context, list, {source}, {destination}, {3, 5}); });
-    check_words(contents<std::uint32_t>(device, destination, 64), expected(3, 5));
+    check_words(rhi::read<std::uint32_t>(device, destination, 64), expected(3, 5));
   });
   group.add("dispatch_order", "a dispatch sees what the one before it wrote", [=](Context& context) {
     rhi::Device& device = context.device();
@@ -130,7 +130,7 @@ void add_compute_cases(const Group& group) {
       dispatch(context, list, {first}, {second}, {2, 1});
       dispatch(context, list, {second}, {first}, {10, 3});
     });
-    check_words(contents<std::uint32_t>(device, first, 64), expected(20, 13));
+    check_words(rhi::read<std::uint32_t>(device, first, 64), expected(20, 13));
   });
   group.add("bound_range", "a bound range begins at its offset", [=](Context& context) {
     rhi::Device& device = context.device();
@@ -141,7 +141,7 @@ void add_compute_cases(const Group& group) {
     const rhi::BufferHandle source = buffer_of(device, words, "source");
     const rhi::BufferHandle destination = buffer_of(device, Words(64), "destination");
     submit(device, [&](rhi::CommandList& list) { dispatch(context, list, {source, offset}, {destination}, {1, 0}); });
-    check_words(contents<std::uint32_t>(device, destination, 64), expected(1, 0));
+    check_words(rhi::read<std::uint32_t>(device, destination, 64), expected(1, 0));
   });
 }
 

@@ -37,8 +37,8 @@ struct DeviceReport {
 struct RunOptions {
   Settings settings = {};
   std::span<const DriverBug> driver_bugs = {};
-  /// What the device has said since the last call, where anything but silence is a fault (a validation layer). A case
-  /// during which it spoke fails. Empty: nobody listens.
+  /// The messages of the device since the last call, if any message is a fault (of a validation layer, say). A case
+  /// during which it spoke fails. Empty: messages are ignored.
   std::function<std::vector<std::string>()> take_messages = {};
   std::function<void(const Result&)> on_result = {};  ///< called after each case
 };

@@ -4,19 +4,6 @@
 
 namespace tandem::conformance {
 
-rhi::BufferHandle buffer_of_bytes(rhi::Device& device, std::span<const std::byte> bytes, const std::string& label) {
-  using rhi::BufferUsage;
-  const rhi::BufferHandle buffer = device.create_buffer({.size = bytes.size(),
-                                                         .usage = BufferUsage::storage | BufferUsage::uniform |
-                                                                  BufferUsage::acceleration_structure_input |
-                                                                  BufferUsage::device_address | BufferUsage::indirect,
-                                                         .label = label});
-  const rhi::CommandListHandle list = device.create_command_list("upload " + label);
-  list->upload(buffer, 0, bytes);
-  device.submit(list);
-  return buffer;
-}
-
 std::vector<glm::vec3> triangle_at(glm::vec3 place) {
   return {place, place + glm::vec3(1, 0, 0), place + glm::vec3(0, 1, 0)};
 }
@@ -38,14 +25,6 @@ rhi::AabbGeometry boxes(rhi::Device& device, const std::vector<Box>& boxes, rhi:
   return geometry;
 }
 
-rhi::AccelerationStructureHandle build_bottom_level(rhi::Device& device, const rhi::BottomLevelDesc& desc) {
-  const rhi::AccelerationStructureHandle structure = device.create_bottom_level(desc);
-  const rhi::CommandListHandle list = device.create_command_list("build " + desc.label);
-  list->build_bottom_level(structure, desc);
-  device.submit(list);
-  return structure;
-}
-
 rhi::AccelerationStructureHandle build_bottom_level(rhi::Device& device, std::vector<rhi::Geometry> geometries) {
   rhi::BottomLevelDesc desc;
   desc.geometries = std::move(geometries);
@@ -61,14 +40,6 @@ rhi::TopLevelDesc top_level_of(rhi::Device& device, const std::vector<rhi::Insta
   desc.flags = flags;
   desc.label = "top level";
   return desc;
-}
-
-rhi::AccelerationStructureHandle build_top_level(rhi::Device& device, const rhi::TopLevelDesc& desc) {
-  const rhi::AccelerationStructureHandle structure = device.create_top_level(desc);
-  const rhi::CommandListHandle list = device.create_command_list("build " + desc.label);
-  list->build_top_level(structure, desc);
-  device.submit(list);
-  return structure;
 }
 
 rhi::AccelerationStructureHandle build_top_level(rhi::Device& device, const std::vector<rhi::InstanceDesc>& instances) {

@@ -3,11 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "rhi/build.hpp"
 #include "rhi/device.hpp"
+#include "rhi/transfer.hpp"
 
 /// Small scenes for cases to trace rays in.
 namespace tandem::conformance {
@@ -25,22 +26,15 @@ struct Box {
 };
 static_assert(sizeof(Box) == 24);
 
-/// A buffer of `bytes`, with every usage that the device has.
-rhi::BufferHandle buffer_of_bytes(rhi::Device& device, std::span<const std::byte> bytes, const std::string& label);
+/// Every usage that a buffer can have.
+inline constexpr rhi::BufferUsage any_usage = rhi::BufferUsage::storage | rhi::BufferUsage::uniform |
+                                              rhi::BufferUsage::acceleration_structure_input |
+                                              rhi::BufferUsage::device_address | rhi::BufferUsage::indirect;
 
-/// A buffer of `values`, which are not none.
+/// A buffer of `values`, which are not none, for any usage.
 template <typename T>
 rhi::BufferHandle buffer_of(rhi::Device& device, const std::vector<T>& values, const std::string& label) {
-  return buffer_of_bytes(device, std::as_bytes(std::span(values)), label);
-}
-
-/// Waits for the device, then reads `count` T from byte `offset` on.
-template <typename T>
-std::vector<T> contents(rhi::Device& device, const rhi::BufferHandle& buffer, std::size_t count,
-                        std::uint64_t offset = 0) {
-  std::vector<T> values(count);
-  device.download(buffer, offset, std::as_writable_bytes(std::span(values)));
-  return values;
+  return rhi::create_filled(device, values, any_usage, label);
 }
 
 /// The corners (0, 0, 0), (1, 0, 0), (0, 1, 0), moved by `place`. Their normal is +z, so a ray that comes from there
@@ -54,16 +48,14 @@ rhi::TriangleGeometry triangles(rhi::Device& device, const std::vector<glm::vec3
 rhi::AabbGeometry boxes(rhi::Device& device, const std::vector<Box>& boxes,
                         rhi::GeometryFlags flags = rhi::GeometryFlags::opaque);
 
-/// A bottom level, built.
-rhi::AccelerationStructureHandle build_bottom_level(rhi::Device& device, const rhi::BottomLevelDesc& desc);
+/// A bottom level of these geometries, built; of a description: rhi/build.hpp.
 rhi::AccelerationStructureHandle build_bottom_level(rhi::Device& device, std::vector<rhi::Geometry> geometries);
 
 /// What builds a top level of these instances; no instances: an empty one.
 rhi::TopLevelDesc top_level_of(rhi::Device& device, const std::vector<rhi::InstanceDesc>& instances,
                                rhi::BuildFlags flags = rhi::BuildFlags::prefer_fast_trace);
 
-/// A top level, built. It keeps no bottom level alive.
-rhi::AccelerationStructureHandle build_top_level(rhi::Device& device, const rhi::TopLevelDesc& desc);
+/// A top level of these instances, built. It keeps no bottom level alive.
 rhi::AccelerationStructureHandle build_top_level(rhi::Device& device, const std::vector<rhi::InstanceDesc>& instances);
 
 /// A bottom level and a top level with one instance of it.

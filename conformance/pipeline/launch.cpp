@@ -45,7 +45,7 @@ Counting make_counting(Context& context, const Size& size) {
 
 /// Every invocation ran `times`, no other did.
 void check_counts(Context& context, const Counting& counting, std::uint32_t times) {
-  const auto results = contents<std::uint32_t>(context.device(), counting.launch.buffers[0], counting.result_count);
+  const auto results = rhi::read<std::uint32_t>(context.device(), counting.launch.buffers[0], counting.result_count);
   check_equal("invocations with a wrong gl_LaunchIDEXT or gl_LaunchSizeEXT", results[0], 0u);
   for (std::size_t i = 1; i < results.size(); ++i)
     check_equal(fmt::format("how often invocation {} ran", i - 1), results[i], times);
@@ -144,7 +144,7 @@ void main() { ++values[128]; }
     list->trace_rays(trace);
   }
   device.submit(list)->wait();
-  const auto results = contents<std::uint32_t>(device, launch.buffers[0], 129);
+  const auto results = rhi::read<std::uint32_t>(device, launch.buffers[0], 129);
   for (std::uint32_t i = 0; i < 64; ++i)
     check_equal(fmt::format("value {} after ten traces", i), results[i], (i + 10) % 64 * 1000 + 10);
 }

@@ -193,9 +193,9 @@ ProbeResult run(Context& context, const Probe& probe, const std::string& label) 
   launch.hit = probe.hit.records.empty() ? numbered_records(probe.hit_groups.size(), first_hit_word) : probe.hit;
   launch.miss = probe.miss.records.empty() ? numbered_records(probe.miss_count, first_miss_word) : probe.miss;
   run(device, make_pipeline(context, text, label), launch);
-  return {.reports = contents<Report>(device, launch.buffers[1], probe.rays.size()),
-          .outcomes = contents<Outcome>(device, launch.buffers[4], probe.rays.size() * outcomes_per_ray),
-          .intersections = contents<Report>(device, launch.buffers[5], probe.rays.size())};
+  return {.reports = rhi::read<Report>(device, launch.buffers[1], probe.rays.size()),
+          .outcomes = rhi::read<Outcome>(device, launch.buffers[4], probe.rays.size() * outcomes_per_ray),
+          .intersections = rhi::read<Report>(device, launch.buffers[5], probe.rays.size())};
 }
 
 }  // namespace tandem::conformance::pipeline

@@ -8,9 +8,8 @@
 #include "conformance/kit/ray_flags.hpp"
 #include "conformance/pipeline/program.hpp"
 
-/// Shaders that tell all they know of a ray and its hit: most cases are data for them. Bindings: 0 the scene, 1 rays, 2
-/// reports, 3 decisions, 4 plans, 5 outcomes, 6
-/// reports of intersection shaders.
+/// Shaders that report every built-in of a ray and its hit: most cases are data for them. Bindings: 0 the scene,
+/// 1 rays, 2 reports, 3 decisions, 4 plans, 5 outcomes, 6 reports of intersection shaders.
 namespace tandem::conformance::pipeline {
 
 /// A traceRayEXT. Layout of the shaders' Ray, std430.

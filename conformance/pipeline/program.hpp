@@ -75,7 +75,7 @@ std::vector<T> results_of(Context& context, const PipelineText& text, Launch lau
   rhi::Device& device = context.device();
   launch.buffers.push_back(buffer_of(device, std::vector<T>(result_count), label + ": results"));
   run(device, make_pipeline(context, text, label), launch);
-  return contents<T>(device, launch.buffers.back(), result_count);
+  return rhi::read<T>(device, launch.buffers.back(), result_count);
 }
 
 }  // namespace tandem::conformance::pipeline

@@ -105,7 +105,7 @@ layout(set = 0, binding = 2, std430) buffer Values { uint values[]; };
     list->dispatch({.pipeline = compute, .bind_groups = {group}});
     list->trace_rays(trace);
     device.submit(list)->wait();
-    const auto results = contents<std::uint32_t>(device, launch.buffers[1], 8);
+    const auto results = rhi::read<std::uint32_t>(device, launch.buffers[1], 8);
     for (std::uint32_t i = 0; i < 8; ++i)
       check_equal(fmt::format("value {}", i), results[i], ((2 + i) * 3 + i) * 2 + i);
   }
@@ -150,7 +150,7 @@ void main() { payload = payload * 1000u + numbers[1].z + shared_word; }
   const rhi::CommandListHandle list = device.create_command_list("several sets");
   list->trace_rays(trace);
   device.submit(list)->wait();
-  check_equal("the payload", contents<std::uint32_t>(device, results, 1)[0], 7077u);
+  check_equal("the payload", rhi::read<std::uint32_t>(device, results, 1)[0], 7077u);
 }
 
 void storage_image(Context& context) {
@@ -181,7 +181,7 @@ void main() {
   const rhi::CommandListHandle list = device.create_command_list("read image");
   list->copy_from_texture(launch.textures[0], {texels});
   device.submit(list);
-  const auto seen = contents<float>(device, texels, 4 * width * height);
+  const auto seen = rhi::read<float>(device, texels, 4 * width * height);
   for (std::uint32_t y = 0; y < height; ++y)
     for (std::uint32_t x = 0; x < width; ++x) {
       const double u = (x + 0.5) / width * 2.0 - 0.5;

@@ -96,7 +96,7 @@ void closed_mesh(Context& context) {
     launch.trace.size = {std::min(rays_per_batch, ray_count - first), 1, 1};
     run(device, pipeline, launch);
   }
-  const auto counts = contents<std::uint32_t>(device, launch.buffers[1], 2);
+  const auto counts = rhi::read<std::uint32_t>(device, launch.buffers[1], 2);
   context.note(fmt::format("{} of {} rays missed", counts[1], ray_count));
   check_equal("rays that a shader heard of", counts[0] + counts[1], ray_count);
   check_equal("rays that left the mesh", counts[1], 0u);

@@ -65,7 +65,7 @@ std::vector<Answer> run_shader(Context& context, const std::string& source, cons
   const rhi::CommandListHandle list = device.create_command_list(label);
   list->dispatch({.pipeline = pipeline, .bind_groups = {group}});
   device.submit(list);
-  return contents<Answer>(device, results, invocation_count);
+  return rhi::read<Answer>(device, results, invocation_count);
 }
 
 /// Runs `body`, which is what follows the prologue, and compares what each invocation answers.

@@ -226,7 +226,7 @@ std::vector<Traversal> trace(Context& context, const rhi::AccelerationStructureH
                   .workgroup_count = {(ray_count + 31) / 32, 1, 1}});
   device.submit(list);
   std::vector<Traversal> traversals;
-  for (const TraversalData& data : contents<TraversalData>(device, results, rays.size()))
+  for (const TraversalData& data : rhi::read<TraversalData>(device, results, rays.size()))
     traversals.push_back(traversal_of(data));
   return traversals;
 }

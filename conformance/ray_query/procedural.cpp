@@ -321,7 +321,7 @@ void check_spheres(Context& context, const std::vector<Transform>& transforms) {
                   .push_constants = std::as_bytes(std::span(&ray_count, 1)),
                   .workgroup_count = {(ray_count + 31) / 32, 1, 1}});
   device.submit(list);
-  const std::vector<SphereHit> seen = contents<SphereHit>(device, hits, rays.size());
+  const std::vector<SphereHit> seen = rhi::read<SphereHit>(device, hits, rays.size());
 
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const SphereAnswer expected = nearest_sphere(transforms, centres, rays[i]);

@@ -165,7 +165,7 @@ void check_watertight(Context& context, const Mesh& mesh, const Transform& trans
                     .push_constants = std::as_bytes(std::span(&count, 1)),
                     .workgroup_count = {(count + 63) / 64, 1, 1}});
     device.submit(list);
-    const std::vector<std::uint32_t> seen = contents<std::uint32_t>(device, hits, count);
+    const std::vector<std::uint32_t> seen = rhi::read<std::uint32_t>(device, hits, count);
     for (std::uint32_t i = 0; i < count; ++i) {
       if (seen[i] != committed_type::none) continue;
       if (misses == 0)

@@ -11,8 +11,13 @@
 #include "pathtracer/image/image.hpp"
 
 /// The formats of picture files. By OpenImageIO, or, for programs that are carried to other machines (OpenImageIO comes
-/// with hundreds of libraries), by tinyexr and libpng: the CMake variable TANDEM_IMAGE_LIBRARY chooses.
+/// with hundreds of libraries), by tinyexr and libpng: the CMake variable TANDEM_IMAGE_LIBRARY chooses. OpenImageIO is
+/// loaded by the first of these functions that is called (docs/decisions/0018-image-library-on-demand.md).
 namespace tandem::pathtracer {
+
+/// Loads OpenImageIO now, so that a program learns before long work whether its images can be written. Throws Error
+/// when it is not there, as all functions here then do.
+void require_image_codec();
 
 /// Strings that a file holds beside its pixels.
 using ImageAttributes = std::map<std::string, std::string>;

@@ -1,3 +1,4 @@
+// The module that image_codec_on_demand.cpp opens.
 #include <memory>
 #include <string>
 #include <string_view>
@@ -6,7 +7,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "base/error.hpp"
-#include "pathtracer/image/image_codec.hpp"
+#include "pathtracer/image/image_codec_module.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -74,10 +75,8 @@ DecodedImage decode(OIIO::ImageInput& input) {
   return image;
 }
 
-}  // namespace
-
-std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const ImageChannel> channels,
-                                  const ImageAttributes& attributes) {
+std::vector<std::byte> exr_file(std::uint32_t width, std::uint32_t height, std::span<const ImageChannel> channels,
+                                const ImageAttributes& attributes) {
   OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels.size()),
                        OIIO::TypeDesc::FLOAT);
   spec.channelnames.clear();
@@ -90,20 +89,20 @@ std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std
   return encode("exr", spec, pixels.data(), "Linear", attributes);
 }
 
-std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgb,
-                                  const ImageAttributes& attributes) {
+std::vector<std::byte> png_file(std::uint32_t width, std::uint32_t height, std::span<const std::uint8_t> rgb,
+                                const ImageAttributes& attributes) {
   const OIIO::ImageSpec spec(static_cast<int>(width), static_cast<int>(height), 3, OIIO::TypeDesc::UINT8);
   return encode("png", spec, rgb.data(), "sRGB", attributes);
 }
 
-DecodedImage decode_image(const std::filesystem::path& path) {
+DecodedImage decode_path(const std::filesystem::path& path) {
   const OIIO::ImageSpec config = reading_config();
   const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &config);
   if (!input) throw Error(OIIO::geterror());
   return decode(*input);
 }
 
-DecodedImage decode_image(std::span<const std::byte> file) {
+DecodedImage decode_bytes(std::span<const std::byte> file) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());  // which only reads
   OIIO::Filesystem::IOProxy* proxy = &memory;  // named twice: some readers forget the argument where there is a config
   OIIO::ImageSpec config = reading_config();
@@ -113,4 +112,15 @@ DecodedImage decode_image(std::span<const std::byte> file) {
   return decode(*input);
 }
 
+}  // namespace
 }  // namespace tandem::pathtracer
+
+extern "C" __attribute__((visibility("default"))) const tandem::pathtracer::ImageCodecModule* tandem_image_codec() {
+  using namespace tandem::pathtracer;
+  static constexpr ImageCodecModule module = {.version = TANDEM_VERSION,
+                                              .encode_exr = &exr_file,
+                                              .encode_png = &png_file,
+                                              .decode_path = &decode_path,
+                                              .decode_bytes = &decode_bytes};
+  return &module;
+}

@@ -181,6 +181,8 @@ DecodedImage decode_png(std::span<const std::byte> file) {
 
 }  // namespace
 
+void require_image_codec() {}  // linked in
+
 std::vector<std::byte> encode_exr(std::uint32_t width, std::uint32_t height, std::span<const ImageChannel> channels,
                                   const ImageAttributes& attributes) {
   // OpenEXR keeps channels apart, and in the order of their names.

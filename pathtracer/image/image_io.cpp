@@ -27,10 +27,14 @@ Format format_of(const std::filesystem::path& path) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (extension == ".exr") return Format::exr;
   if (extension == ".png") return Format::png;
-  throw Error("cannot write '" + path.string() + "': the name of an image ends in .exr or .png");
+  throw Error("cannot write '" + path.string() + "': the file name must end in .exr or .png");
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+Error write_error(const std::filesystem::path& path, const std::string& why) {
+  return Error("cannot write '" + path.string() + "': " + first_line(why));
+}
 
 }  // namespace
 
@@ -46,17 +50,20 @@ std::vector<ImageChannel> color_channels(const Image& image) {
 
 void check_image_path(const std::filesystem::path& path) {
   format_of(path);
+  try {
+    require_image_codec();
+  } catch (const Error& error) {
+    throw write_error(path, error.what());
+  }
   const AtomicFile probe(path);
 }
 
 void write_image(const std::filesystem::path& path, const Image& image, const ImageMetadata& metadata, const Tone& tone,
                  std::span<const ImageChannel> layers) {
   const Format format = format_of(path);
-  const auto fail = [&](const std::string& why) {
-    return Error("cannot write '" + path.string() + "': " + first_line(why));
-  };
+  const auto fail = [&](const std::string& why) { return write_error(path, why); };
   if (image.pixels.empty()) throw fail("the image is empty");
-  if (format != Format::exr && !layers.empty()) throw fail("only an .exr has layers");
+  if (format != Format::exr && !layers.empty()) throw fail("only an .exr holds layers");
   AtomicFile target(path);
   ImageAttributes attributes;
   for (const auto& [key, value] : metadata) attributes.emplace(std::string(metadata_prefix) + key, value);

@@ -19,7 +19,8 @@ using ImageMetadata = std::map<std::string, std::string>;
 std::vector<ImageChannel> color_channels(const Image& image);
 
 /// Throws Error, naming the file, unless write_image could write there now: the extension must be .exr or .png, the
-/// folder must exist and take a new file, and the path must not be a folder. To be called before a long rendering.
+/// folder must exist and take a new file, the path must not be a folder, and the image library must be installed. To be
+/// called before a long rendering.
 void check_image_path(const std::filesystem::path& path);
 
 /// Writes 32-bit float OpenEXR, or PNG of 8 bits through the tone curve (NaN becomes black). The file appears whole,

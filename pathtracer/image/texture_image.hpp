@@ -16,7 +16,7 @@ enum class TextureEncoding {
 };
 
 /// Reads an image file in the nearest format that holds it without loss. One or two channels become grey, or grey with
-/// alpha; of more than four the first three count. What is no finite number or less
+/// alpha; of more than four the first three count. What is not a finite number or less
 /// than 1e-20 becomes 0, and so do colours below 0. Any format that decode_image reads. Throws Error, naming the file.
 TextureImage load_texture_image(const std::filesystem::path& path, TextureEncoding encoding);
 

@@ -28,8 +28,8 @@ bool Accumulation::next_frame(const RenderSettings& settings, const Accumulation
     renderer_->restart(frame);
     return renderer_->render(accumulation.samples_per_frame);
   }
-  const Camera& camera = renderer_->camera();
-  if (!(essential(settings, camera) == essential(renderer_->settings(), camera))) renderer_->restart(settings);
+  const Camera& camera = renderer_->scene().camera();
+  if (!(essential(settings, camera) == essential(renderer_->scene().settings(), camera))) renderer_->restart(settings);
   frames_ = 0;
   if (renderer_->samples() >= accumulation.maximum_samples) return false;
   const std::uint32_t missing = accumulation.maximum_samples - renderer_->samples();

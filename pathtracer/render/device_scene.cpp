@@ -12,18 +12,10 @@
 #include "base/error.hpp"
 #include "base/srgb.hpp"
 #include "pathtracer/scene/environment.hpp"
+#include "rhi/transfer.hpp"
 
 namespace tandem::pathtracer {
 namespace {
-
-template <typename T>
-rhi::BufferHandle upload_all(rhi::Device& device, rhi::CommandList& list, const std::vector<T>& values,
-                             rhi::BufferUsage usage, const std::string& label) {
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(values));
-  rhi::BufferHandle buffer = device.create_buffer({.size = bytes.size(), .usage = usage, .label = label});
-  list.upload(buffer, 0, bytes);
-  return buffer;
-}
 
 /// No buffer may be empty; the shaders do not read what stands in for nothing.
 template <typename T>
@@ -53,7 +45,7 @@ TexelStore store_texels(const Scene& scene) {
     store.texels.insert(store.texels.end(), image.texels.begin(), image.texels.end());
     store.texels.resize((store.texels.size() + word_size - 1) / word_size * word_size);
     if (store.texels.size() > std::numeric_limits<std::uint32_t>::max())
-      throw Error(fmt::format("the textures of {} have more texels than can be counted", scene.name));
+      throw Error(fmt::format("the textures of {} need more than 4 GiB of texels", scene.name));
   }
   for (const Texture& texture : scene.textures) {
     GpuTexture gpu = texture.gpu;
@@ -99,8 +91,8 @@ static_assert(sizeof(Bounds) == 6 * sizeof(float));
 
 rhi::BottomLevelDesc describe_spheres(rhi::Device& device, rhi::CommandList& list, const Scene& scene) {
   rhi::AabbGeometry geometry;
-  geometry.boxes = {upload_all(device, list, boxes_of(scene.spheres), rhi::BufferUsage::acceleration_structure_input,
-                               "boxes of spheres")};
+  geometry.boxes = {rhi::create_filled(device, list, boxes_of(scene.spheres),
+                                       rhi::BufferUsage::acceleration_structure_input, "boxes of spheres")};
   geometry.box_count = static_cast<std::uint32_t>(scene.spheres.size());
   rhi::BottomLevelDesc desc;
   desc.geometries.emplace_back(geometry);
@@ -142,10 +134,10 @@ void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   if (environment != emitters_.end()) environment_light_ = static_cast<std::uint32_t>(environment - emitters_.begin());
   const rhi::CommandListHandle list = device.create_command_list("upload of " + scene.name);
   const auto store = [&](auto values, const char* label) {
-    return upload_all(device, *list, never_empty(std::move(values)), BufferUsage::storage, label);
+    return rhi::create_filled(device, *list, never_empty(std::move(values)), BufferUsage::storage, label);
   };
-  positions_ = upload_all(device, *list, never_empty(scene.positions),
-                          BufferUsage::storage | BufferUsage::acceleration_structure_input, "positions");
+  positions_ = rhi::create_filled(device, *list, never_empty(scene.positions),
+                                  BufferUsage::storage | BufferUsage::acceleration_structure_input, "positions");
   normals_ = store(scene.normals, "normals");
   triangles_ = store(scene.triangles, "triangles");
   materials_ = store(scene.materials, "materials");
@@ -170,7 +162,7 @@ void DeviceScene::upload_lights(rhi::Device& device, rhi::CommandList& list, std
   std::vector<Emitter> all = emitters_;
   all.insert(all.end(), punctual.begin(), punctual.end());
   const std::vector<GpuLight> lights = light_table(all);
-  lights_ = upload_all(device, list, never_empty(lights), rhi::BufferUsage::storage, "lights");
+  lights_ = rhi::create_filled(device, list, never_empty(lights), rhi::BufferUsage::storage, "lights");
   light_count_ = static_cast<std::uint32_t>(lights.size());
 }
 
@@ -201,7 +193,7 @@ rhi::BottomLevelDesc DeviceScene::describe_triangles(rhi::Device& device, rhi::C
   for (const GpuTriangle& triangle : scene.triangles)
     indices.insert(indices.end(), std::begin(triangle.vertices), std::end(triangle.vertices));
   const rhi::BufferHandle index_buffer =
-      upload_all(device, list, indices, rhi::BufferUsage::acceleration_structure_input, "indices");
+      rhi::create_filled(device, list, indices, rhi::BufferUsage::acceleration_structure_input, "indices");
 
   // The shaders know a transparent triangle by its geometry's index, so the opaque geometry stays even where it is
   // empty.
@@ -233,7 +225,7 @@ void DeviceScene::create_structures(rhi::Device& device, rhi::CommandList& list,
   if (!scene.triangles.empty()) add_instance(describe_triangles(device, list, scene), triangle_instance);
   if (!scene.spheres.empty()) add_instance(describe_spheres(device, list, scene), sphere_instance);
   top_.instances.buffer =
-      upload_all(device, list, instances, rhi::BufferUsage::acceleration_structure_input, "instances");
+      rhi::create_filled(device, list, instances, rhi::BufferUsage::acceleration_structure_input, "instances");
   top_.instance_count = static_cast<std::uint32_t>(instances.size());
   top_.label = scene.name;
   top_level_ = device.create_top_level(top_);

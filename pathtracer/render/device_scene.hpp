@@ -23,11 +23,11 @@ class DeviceScene {
   /// refuses (a scene that is too large).
   DeviceScene(rhi::Device& device, const Scene& scene);
 
-  /// Puts other lights without extent in the place of the scene's. Bind groups with its entries are to be made anew,
-  /// and its features may have become more. Throws Error for numbers out of range; nothing has changed then.
+  /// Replaces the point, spot and directional lights of the scene. The caller must recreate bind groups that hold its
+  /// entries; features() may have grown. Throws Error for numbers out of range and then changes nothing.
   void set_lights(rhi::Device& device, std::span<const PunctualLight> lights);
 
-  /// Builds the acceleration structures; to be called once, before the first ray, and lets go of what only that needs.
+  /// Builds the acceleration structures and releases the inputs of the build. Call it once, before the first ray.
   void record_build(rhi::CommandList& list);
   /// For a bind group of set 0 of a PathTraceProgram: what it uses of the scene.
   /// @param constants a buffer of one RenderConstants

@@ -1,6 +1,13 @@
 #include "pathtracer/render/path_event.hpp"
 
+#include <cstddef>
+#include <cstring>
+
 namespace tandem::pathtracer {
+
+bool PathSummary::operator==(const PathSummary& other) const {
+  return std::memcmp(this, &other, offsetof(PathSummary, reserved)) == 0;
+}
 
 TracedRay ray_of(const PathId& path, const PathEvent& event) {
   return {.origin = event.vector(event_word::ray_origin),

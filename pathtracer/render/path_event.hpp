@@ -10,6 +10,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "pathtracer/render/event_word.hpp"
 #include "pathtracer/render/traced_ray.hpp"
 
 /// What happens along a path, as shaders/integrator/events.glsl writes it down, byte for byte (std430).
@@ -46,7 +47,7 @@ enum class EndReason : std::uint32_t {
 /// What a device reports of a closest hit.
 enum class HitKind : std::uint32_t { none = 0, front = 1, back = 2, procedural = 3 };
 
-/// One event. compare/path/event_fields.hpp says what its words mean.
+/// One event. pathtracer/render/event_word.hpp says where its values are.
 struct PathEvent {
   std::array<std::uint32_t, 32> words{};
 
@@ -63,34 +64,6 @@ struct PathEvent {
   bool operator==(const PathEvent&) const = default;
 };
 static_assert(sizeof(PathEvent) == 128);
-
-/// Where words of events lie that programs other than tables need.
-namespace event_word {
-inline constexpr std::size_t depth = 2;                         ///< segment
-inline constexpr std::size_t segment_origin = 4;                ///< segment
-inline constexpr std::size_t segment_previous_density = 7;      ///< segment
-inline constexpr std::size_t segment_direction = 8;             ///< segment
-inline constexpr std::size_t segment_eta_scale = 11;            ///< segment
-inline constexpr std::size_t segment_throughput = 12;           ///< segment
-inline constexpr std::size_t segment_radiance = 16;             ///< segment
-inline constexpr std::size_t segment_previous_position = 20;    ///< segment
-inline constexpr std::size_t ray_kind = 2;                      ///< ray: RayKind
-inline constexpr std::size_t ray_dimension = 3;                 ///< ray
-inline constexpr std::size_t ray_origin = 4;                    ///< ray
-inline constexpr std::size_t ray_t_max = 7;                     ///< ray
-inline constexpr std::size_t ray_direction = 8;                 ///< ray
-inline constexpr std::size_t ray_answer = 11;                   ///< ray: TracedRay::answer
-inline constexpr std::size_t hit_kind = 12;                     ///< ray: HitKind
-inline constexpr std::size_t hit_t = 28;                        ///< ray; not in the digest
-inline constexpr std::size_t hit_barycentrics = 29;             ///< ray; two words, not in the digest
-inline constexpr std::size_t surface_texture_coordinates = 16;  ///< surface; two words
-inline constexpr std::size_t end_reason = 2;                    ///< end: EndReason
-inline constexpr std::size_t end_ray_count = 3;                 ///< end
-inline constexpr std::size_t end_radiance = 4;                  ///< end
-inline constexpr std::size_t roulette_survives = 2;             ///< roulette
-inline constexpr std::size_t roulette_bits = 3;                 ///< roulette
-inline constexpr std::size_t roulette_survival = 4;             ///< roulette
-}  // namespace event_word
 
 /// Which path: one sample of one pixel.
 struct PathId {
@@ -119,6 +92,9 @@ struct PathSummary {
   /// Of all words of all events but event_word::hit_t and hit_barycentrics.
   std::uint32_t digest = 0;
   std::array<std::uint32_t, 2> reserved{};  ///< whatever the device has there
+
+  /// Whether both have the same bits, `reserved` aside: a NaN equals itself, and the two zeros differ.
+  bool operator==(const PathSummary& other) const;
 };
 static_assert(sizeof(PathSummary) == 32);
 

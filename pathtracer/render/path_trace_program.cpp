@@ -51,7 +51,7 @@ rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoin
 /// share them.
 rhi::ShaderTableHandle shader_table(rhi::Device& device, PathTraceTask task, Features features) {
   const EntryPoint ray_generation = ray_generation_shader(task);
-  // Rays that are written down carry more.
+  // Recorded rays carry more.
   const bool log = task == PathTraceTask::log;
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
     return device.create_shader_module({spirv, label});

@@ -14,7 +14,7 @@ namespace tandem::pathtracer {
 /// What an invocation of the path tracer's shaders does.
 enum class PathTraceTask {
   picture,    ///< shaders/path_trace.glsl: adds samples to the sums of a pixel
-  log,        ///< shaders/path_log.glsl: writes down the events of a path
+  log,        ///< shaders/path_log.glsl: records the events of a path
   first_hit,  ///< shaders/first_hit.glsl: adds samples to sums of what a pixel shows first
   answer      ///< shaders/ray_answer.glsl: traces one ray again
 };

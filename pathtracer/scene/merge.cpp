@@ -72,7 +72,7 @@ void transform_geometry(Scene& model, const glm::dmat4& transform) {
     for (GpuTriangle& triangle : model.triangles) std::swap(triangle.vertices[1], triangle.vertices[2]);
   if (model.spheres.empty()) return;
   const std::optional<double> scale = similarity_scale(linear);
-  if (!scale) throw Error(fmt::format("{}: its spheres would be spheres no more under its transform", model.name));
+  if (!scale) throw Error(fmt::format("{}: its transform would deform its spheres", model.name));
   for (GpuSphere& sphere : model.spheres) {
     sphere.centre = point_of(transform, sphere.centre, model.name);
     sphere.radius *= static_cast<float>(*scale);

@@ -92,7 +92,7 @@ std::uint64_t kernel_cache_bound(const rhi::MessageCallback& on_message) {
   if (on_message)
     on_message({.severity = rhi::Severity::warning,
                 .source = message_source,
-                .text = fmt::format("TANDEM_CACHE_MAX_MB={} is no whole number of MiB; the bound is 256", *text)});
+                .text = fmt::format("TANDEM_CACHE_MAX_MB={} is not a whole number of MiB; the limit is 256", *text)});
   return usual;
 }
 

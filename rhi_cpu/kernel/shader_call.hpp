@@ -11,7 +11,7 @@ namespace tandem::kernel {
 
 /// What an any-hit shader says of its candidate.
 enum class HitDecision : std::uint32_t {
-  accept,    ///< it ended without a word
+  accept,    ///< it returned normally
   ignore,    ///< ignoreIntersectionEXT
   terminate  ///< terminateRayEXT: accepted, and the ray looks no further
 };

@@ -9,6 +9,7 @@
 #include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 
 namespace tandem::cpu {
@@ -130,9 +131,7 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, cons
 /// Folding leaves what it cannot compute.
 void check_folded(std::span<const std::uint32_t> spirv, const std::string& label) {
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    if (operation(i) == spv::OpSpecConstantOp)
-      throw rhi::Error(rhi::ErrorCode::unsupported, label,
-                       "OpSpecConstantOp with " + folded_operation_name(i) + " is not supported by the CPU device");
+    if (operation(i) == spv::OpSpecConstantOp) refuse(label, "OpSpecConstantOp with " + folded_operation_name(i));
   });
 }
 

@@ -4,8 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "rhi/error.hpp"
 #include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -27,9 +28,7 @@ Printer::Printer(const std::vector<std::uint32_t>& spirv, const std::string& lab
                  const rhi::ShaderReflection& reflection, const std::string& entry_symbol)
     : CompilerGLSL(spirv.data(), spirv.size()), label_(label), reflection_(reflection), entry_symbol_(entry_symbol) {}
 
-void Printer::fail(const std::string& what) const {
-  throw rhi::Error(rhi::ErrorCode::unsupported, label_, what + " is not supported by the CPU device");
-}
+void Printer::fail(const std::string& what) const { refuse(label_, what); }
 
 std::string Printer::compile() {
   set_up_backend();
@@ -150,7 +149,7 @@ void Printer::measure_functions() {
         ++size;
         if (instruction.op == spv::OpLine) has_line_numbers_ = true;
         if (instruction.op == spv::OpFunctionCall)
-          size = std::min(size + self(self, stream(instruction)[2]), 2 * inlining_limit);
+          size = std::min(size + self(self, view(instruction).operand(0)), 2 * inlining_limit);
       }
     }
     return inlined_size_[id] = size;
@@ -268,47 +267,14 @@ void Printer::print_run() {
       workgroup_size_[0], workgroup_size_[1], workgroup_size_[2]));
 }
 
-std::string Printer::resource_kind(rhi::BindingKind kind) const {
-  switch (kind) {
-    case rhi::BindingKind::uniform_buffer:
-      return "uniform_buffer";
-    case rhi::BindingKind::storage_buffer:
-      return "storage_buffer";
-    case rhi::BindingKind::acceleration_structure:
-      return "acceleration_structure";
-    case rhi::BindingKind::storage_image:
-      return "storage_image";
-    default:
-      fail("a sampled image or sampler binding");
-  }
-}
-
-std::string Printer::stage_name() const {
-  switch (reflection_.stage) {
-    case rhi::ShaderStage::compute:
-      return "compute";
-    case rhi::ShaderStage::ray_generation:
-      return "ray_generation";
-    case rhi::ShaderStage::any_hit:
-      return "any_hit";
-    case rhi::ShaderStage::closest_hit:
-      return "closest_hit";
-    case rhi::ShaderStage::miss:
-      return "miss";
-    case rhi::ShaderStage::intersection:
-      return "intersection";
-    case rhi::ShaderStage::callable:
-      return "callable";
-  }
-  fail("an unknown shader stage");
-}
-
 void Printer::print_info() {
   std::uint32_t resources = 0;
   std::string slots;
   for (const rhi::ShaderBinding& binding : reflection_.bindings) {
+    const char* kind = resource_kind_name(binding.kind);
+    if (kind == nullptr) fail("a sampled image or sampler binding");
     slots += fmt::format("    {{{}, {}, {}, {}, k::ResourceKind::{}}},\n", binding.set, binding.binding, binding.count,
-                         resources, resource_kind(binding.kind));
+                         resources, kind);
     resources += binding.count;
   }
   const bool any = !reflection_.bindings.empty();
@@ -318,8 +284,8 @@ void Printer::print_info() {
       "constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, {}, k::Stage::{}, {}, "
       "{}, {}}};\n",
       workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
-      reflection_.bindings.size(), any ? "binding_slots" : "nullptr", is_traced() ? "nullptr" : "run", stage_name(),
-      is_traced() ? "call" : "nullptr", reflection_.shader_record_size, payload_size));
+      reflection_.bindings.size(), any ? "binding_slots" : "nullptr", is_traced() ? "nullptr" : "run",
+      stage_name(reflection_.stage), is_traced() ? "call" : "nullptr", reflection_.shader_record_size, payload_size));
   statement("}  // namespace");
   statement("");
   statement("extern \"C\" __attribute__((visibility(\"default\"))) const tandem::kernel::KernelInfo* ", entry_symbol_,
@@ -371,7 +337,7 @@ std::string Printer::variable_decl(const SPIRVariable& variable) {
 std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
   if (is_traced()) {
     const auto type = built_in_types_.find(builtin);
-    if (type == built_in_types_.end()) fail(fmt::format("built-in {}", static_cast<std::uint32_t>(builtin)));
+    if (type == built_in_types_.end()) fail("built-in " + built_in_name(builtin));
     return fmt::format("{}({})", type_name(type->second), traced_built_in(builtin));
   }
   switch (builtin) {
@@ -386,7 +352,7 @@ std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
     case spv::BuiltInLocalInvocationIndex:
       return "built_in_LocalInvocationIndex";
     default:
-      fail(fmt::format("built-in {}", static_cast<std::uint32_t>(builtin)));
+      fail("built-in " + built_in_name(builtin));
   }
 }
 

@@ -13,6 +13,12 @@
 #include <spirv_cross/spirv_glsl.hpp>
 
 #include "rhi/shader_reflection.hpp"
+#include "rhi_cpu/translate/extended_instructions.hpp"
+#include "rhi_cpu/translate/instruction.hpp"
+#include "rhi_cpu/translate/operations.hpp"
+#include "rhi_cpu/translate/scalar_types.hpp"
+#include "rhi_cpu/translate/storage_classes.hpp"
+#include "rhi_cpu/translate/value_layout.hpp"
 
 namespace tandem::cpu {
 
@@ -36,6 +42,10 @@ class Printer : public spirv_cross::CompilerGLSL {
   /// The translation unit. Throws rhi::Error(unsupported), or what SPIRV-Cross throws.
   std::string compile() override;
 
+  /// Whether there is C++ for an instruction in a function's blocks: it is an operation of operations.hpp, or one that
+  /// is printed by hand.
+  static bool prints(spv::Op op);
+
  protected:
   void emit_function_prototype(spirv_cross::SPIRFunction& function, const spirv_cross::Bitset& return_flags) override;
   void emit_entry_point_declarations() override {}
@@ -47,8 +57,7 @@ class Printer : public spirv_cross::CompilerGLSL {
 
  private:
   using Type = spirv_cross::SPIRType;
-  using BaseType = spirv_cross::SPIRType::BaseType;
-  using Operands = const std::uint32_t*;
+  using PrintFunction = void (Printer::*)(const Instruction&);
 
   /// Where a pointer into a buffer points, and how the memory there is laid out beyond what its type says.
   struct Address {
@@ -72,25 +81,17 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_constants();
   void print_run();
   void print_info();
-  std::string resource_kind(rhi::BindingKind kind) const;
   const rhi::ShaderBinding* binding_of(std::uint32_t variable) const;
   std::uint32_t first_resource_of(std::uint32_t variable) const;
-  std::string stage_name() const;
 
   // printer_types.cpp: names of types, structs, constants.
   std::string type_name(std::uint32_t type_id) { return type_name(get<Type>(type_id)); }
   std::string type_name(const Type& type);
-  std::string scalar_name(BaseType base) const;
-  std::string vector_name(BaseType base, std::uint32_t length) const;
   std::string struct_name(const Type& type);
   std::vector<std::string> member_names(const Type& type) const;
   std::uint32_t array_length(const Type& type) const;
-  /// An array or a pointer to one has the array's lengths; an array of pointers and a pointer are both marked as
-  /// pointers, but only a pointer is one level deeper than what it is made of.
-  bool is_pointer(const Type& type) const {
-    return type.pointer && type.pointer_depth > get<Type>(type.parent_type).pointer_depth;
-  }
-  bool is_array(const Type& type) const { return !type.array.empty() && !is_pointer(type); }
+  bool is_pointer(const Type& type) const { return cpu::is_pointer(*this, type); }
+  bool is_array(const Type& type) const { return cpu::is_array(*this, type); }
   bool is_runtime_array(const Type& type) const { return is_array(type) && array_length(type) == 0; }
   bool is_opaque(const Type& type) const;
   std::string constant_text(const spirv_cross::SPIRConstant& constant);
@@ -98,54 +99,83 @@ class Printer : public spirv_cross::CompilerGLSL {
                           std::uint32_t row) const;
   std::string constant_initializer(const spirv_cross::SPIRConstant& constant);
 
-  // printer_memory.cpp: pointers, loads, stores, atomics.
-  bool is_buffer(spv::StorageClass storage) const;
+  // printer_memory.cpp: pointers, loads, stores.
   bool is_buffer_pointer(std::uint32_t id);
   std::uint32_t pointee(std::uint32_t pointer_type_id) const;
   std::uint32_t matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const;
   Address address_of(std::uint32_t pointer_id);
   std::string printed(const Address& address) const;
-  void print_access_chain(Operands ops, std::uint32_t length);
-  void chain_in_buffer(Operands ops, std::uint32_t length);
-  void chain_in_variable(Operands ops, std::uint32_t length);
+  void print_access_chain(const Instruction& i);
+  void chain_in_buffer(const Instruction& i);
+  void chain_in_variable(const Instruction& i);
   void index_address(Address& address, std::uint32_t index_id, std::uint32_t stride);
   std::string load_text(std::uint32_t type_id, const Address& address);
   std::string store_text(std::uint32_t type_id, const Address& address, const std::string& value);
-  void print_load(Operands ops);
-  void print_store(std::uint32_t pointer_id, const std::string& text);
-  void print_array_length(Operands ops);
-  void print_atomic(spv::Op op, Operands ops);
+  void print_load(const Instruction& i);
+  void print_store(const Instruction& i);
+  void print_copy_memory(const Instruction& i);
+  void print_store_to(std::uint32_t pointer_id, const std::string& text);
+  void print_array_length(const Instruction& i);
   void print_struct_memory(std::uint32_t struct_type_id);
   void print_struct_memory_functions();
 
+  // printer_atomics.cpp
+  std::string atomic_call(const Instruction& i, const char* function, BaseType base, const std::string& arguments);
+  BaseType atomic_component(const Instruction& i);
+  void print_atomic(const Instruction& i, const Operation& operation);
+  void print_atomic_load(const Instruction& i);
+  void print_atomic_store(const Instruction& i);
+  void print_compare_exchange(const Instruction& i);
+
   // printer_composites.cpp: calls, and values made of values.
-  void print_call(Operands ops, std::uint32_t length);
-  void print_composite(spv::Op op, Operands ops, std::uint32_t length);
+  void print_call(const Instruction& i);
+  /// The element that the operands from `first` on lead to.
+  std::string part(const std::string& composite, const Type& type, const Instruction& i, std::size_t first);
+  void print_construct(const Instruction& i);
+  void print_extract(const Instruction& i);
+  void print_insert(const Instruction& i);
+  void print_extract_dynamic(const Instruction& i);
+  void print_insert_dynamic(const Instruction& i);
+  void print_shuffle(const Instruction& i);
+  void print_copy(const Instruction& i);
+  void print_copy_logical(const Instruction& i);
+
+  // printer_instructions.cpp: which function prints which instruction.
+  Instruction view(const spirv_cross::Instruction& instruction) const;
+  /// The function for an instruction that operations.hpp does not have; null when there is none.
+  static PrintFunction by_hand(spv::Op op);
+  void print_nothing(const Instruction&) {}
+  void print_line(const Instruction& i);
+  void print_memory_barrier(const Instruction& i);
 
   // printer_operations.cpp: everything that computes.
-  bool print_arithmetic(spv::Op op, Operands ops);
-  bool print_relation(spv::Op op, Operands ops);
-  bool print_conversion(spv::Op op, Operands ops);
-  bool print_bits(spv::Op op, Operands ops);
-  bool print_matrix(spv::Op op, Operands ops);
-  void print_extended_result(Operands ops, const std::string& low, const std::string& high);
-
-  // printer_ray_query.cpp
-  void print_ray_query(spv::Op op, Operands ops);
+  void print_operation(const Instruction& i, const Operation& operation);
+  void print_infix(const Instruction& i, const Operation& operation);
+  void print_prefix(const Instruction& i, const Operation& operation);
+  void print_function(const Instruction& i, const Operation& operation);
+  void print_relation(const Instruction& i, const Operation& operation);
+  void print_conversion(const Instruction& i, const Operation& operation);
+  void print_double_width(const Instruction& i, const Operation& operation);
+  void print_shift(const Instruction& i, const Operation& operation);
+  void print_bit_field(const Instruction& i, const Operation& operation);
+  void print_ray_query_getter(const Instruction& i, const Operation& operation);
+  void print_bit_count(const Instruction& i);
+  void print_bitcast(const Instruction& i);
+  void check_bit_width(const Instruction& i);
 
   // printer_ray_tracing.cpp: the stages of a ray tracing pipeline.
   bool is_traced() const;
-  bool is_payload(spv::StorageClass storage) const;
-  bool is_incoming_payload(spv::StorageClass storage) const;
   void set_up_endings();
   /// The statement that ends the function being printed, and with it the shader.
   std::string ending();
   void print_call_ending(std::uint32_t function_id);
-  std::uint32_t value_alignment(const Type& type) const;
-  std::uint32_t value_size(const Type& type) const;
   void print_traced_members();
   void print_shader_call();
-  void print_ray_tracing(spv::Op op, Operands ops);
+  void print_trace_ray(const Instruction& i);
+  void print_execute_callable(const Instruction& i);
+  void print_report_intersection(const Instruction& i);
+  void print_ignore_intersection(const Instruction& i);
+  void print_terminate_ray(const Instruction& i);
   std::string traced_built_in(spv::BuiltIn built_in) const;
 
   // printer_images.cpp: storage images, and descriptors as values.
@@ -156,28 +186,34 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string descriptor_member(const Type& type, const std::string& resource) const;
   /// What the UniformConstant pointer `pointer_id` points at.
   std::string descriptor_value(std::uint32_t pointer_id);
-  bool print_image(spv::Op op, Operands ops, std::uint32_t length);
+  /// Refuses image operands, whose mask is operand `mask`, that name a sample.
+  void refuse_sample(const Instruction& i, std::size_t mask) const;
+  void print_image_read(const Instruction& i);
+  void print_image_write(const Instruction& i);
+  void print_image_size(const Instruction& i);
+  void print_texel_pointer(const Instruction& i);
 
   // printer_extended.cpp: GLSL.std.450.
-  void print_extended(Operands ops, std::uint32_t length);
-  void print_split(Operands ops, const char* function, bool through_pointer);
+  void print_extended(const Instruction& i);
+  void print_extended_call(const Instruction& i, const ExtendedInstruction& extended, BaseType base);
+  void print_split_into_pointer(const Instruction& i, const char* function);
+  void print_split_into_struct(const Instruction& i, const char* function);
 
   // Operands.
   std::string value(std::uint32_t id) { return to_expression(id); }
   const Type& type_of(std::uint32_t id) { return get<Type>(expression_type_id(id)); }
-  /// The operand as components of `base`, converted when it has another signedness.
+  /// The operand as components of `base`, or of the signedness `sign`, converted when it has others.
   std::string value_as(std::uint32_t id, BaseType base);
-  std::string value_signed(std::uint32_t id);
-  std::string value_unsigned(std::uint32_t id);
+  std::string value_with_sign(std::uint32_t id, Sign sign);
+  /// Operands `first` and following, with commas between them.
+  std::string values_with_sign(const Instruction& i, std::size_t first, Sign sign);
   /// Element `index` of the composite value or variable `composite`.
   std::string element(const std::string& composite, const Type& type, std::uint32_t index) const;
   const Type& element_type(const Type& type, std::uint32_t index) const;
-  /// Result `id` of type `type_id` is `text`, which has components of `base`.
-  void define(std::uint32_t type_id, std::uint32_t id, const std::string& text);
-  void define_as(std::uint32_t type_id, std::uint32_t id, const std::string& text, BaseType base);
-  static bool is_integer(BaseType base);
-  static BaseType to_signed(BaseType base);
-  static BaseType to_unsigned(BaseType base);
+  /// The result of `i` is `text`.
+  void define(const Instruction& i, const std::string& text);
+  /// The same of a text that has components of `base`.
+  void define_as(const Instruction& i, const std::string& text, BaseType base);
 
   std::string label_;
   rhi::ShaderReflection reflection_;

@@ -6,83 +6,95 @@ namespace tandem::cpu {
 
 using spirv_cross::SPIRType;
 
-void Printer::print_call(Operands ops, std::uint32_t length) {
+void Printer::print_call(const Instruction& i) {
+  const std::uint32_t function = i.operand(0);
   std::string arguments;
-  for (std::uint32_t i = 3; i < length; ++i) {
-    if (i > 3) arguments += ", ";
-    const Type& type = type_of(ops[i]);
+  for (std::size_t k = 1; k < i.operand_count(); ++k) {
+    const std::uint32_t argument = i.operand(k);
+    if (k > 1) arguments += ", ";
+    const Type& type = type_of(argument);
     if (is_pointer(type) && type.storage == spv::StorageClassUniformConstant) {
-      arguments += descriptor_value(ops[i]);
+      arguments += descriptor_value(argument);
     } else {
-      arguments += is_buffer_pointer(ops[i]) ? printed(address_of(ops[i])) : value(ops[i]);
+      arguments += is_buffer_pointer(argument) ? printed(address_of(argument)) : value(argument);
     }
   }
-  const std::string text = fmt::format("{}({})", to_name(ops[2]), arguments);
-  if (get<Type>(ops[0]).basetype == SPIRType::Void)
+  const std::string text = fmt::format("{}({})", to_name(function), arguments);
+  if (get<Type>(i.result_type()).basetype == SPIRType::Void)
     statement(text, ";");
   else
-    define(ops[0], ops[1], text);
-  print_call_ending(ops[2]);
+    define(i, text);
+  print_call_ending(function);
 }
 
-void Printer::print_composite(spv::Op op, Operands ops, std::uint32_t length) {
-  const Type& type = get<Type>(ops[0]);
-  switch (op) {
-    case spv::OpCompositeConstruct: {
-      std::string elements;
-      for (std::uint32_t i = 2; i < length; ++i) elements += (i == 2 ? "" : ", ") + value(ops[i]);
-      if (is_array(type))
-        define(ops[0], ops[1], fmt::format("{}{{{{{}}}}}", type_name(type), elements));
-      else if (type.basetype == SPIRType::Struct)
-        define(ops[0], ops[1], fmt::format("{}{{{}}}", type_name(type), elements));
-      else
-        define(ops[0], ops[1], fmt::format("{}({})", type_name(type), elements));
-      return;
-    }
-    case spv::OpCompositeExtract: {
-      std::string text = value(ops[2]);
-      const Type* part = &type_of(ops[2]);
-      for (std::uint32_t i = 3; i < length; part = &element_type(*part, ops[i++])) text = element(text, *part, ops[i]);
-      define(ops[0], ops[1], text);
-      return;
-    }
-    case spv::OpCompositeInsert: {
-      define(ops[0], ops[1], value(ops[3]));
-      std::string text = value(ops[1]);
-      const Type* part = &type;
-      for (std::uint32_t i = 4; i < length; part = &element_type(*part, ops[i++])) text = element(text, *part, ops[i]);
-      statement(text, " = ", value(ops[2]), ";");
-      return;
-    }
-    case spv::OpVectorExtractDynamic:
-      return define(ops[0], ops[1], fmt::format("{}[{}]", value(ops[2]), value(ops[3])));
-    case spv::OpVectorInsertDynamic:
-      define(ops[0], ops[1], value(ops[2]));
-      statement(value(ops[1]), "[", value(ops[4]), "] = ", value(ops[3]), ";");
-      return;
-    case spv::OpVectorShuffle: {
-      const std::uint32_t first_length = type_of(ops[2]).vecsize;
-      std::string elements;
-      for (std::uint32_t i = 4; i < length; ++i) {
-        elements += i == 4 ? "" : ", ";
-        if (ops[i] == 0xffffffffu)
-          elements += "0";
-        else if (ops[i] < first_length)
-          elements += element(value(ops[2]), type_of(ops[2]), ops[i]);
-        else
-          elements += element(value(ops[3]), type_of(ops[3]), ops[i] - first_length);
-      }
-      return define(ops[0], ops[1], fmt::format("{}({})", type_name(type), elements));
-    }
-    case spv::OpCopyLogical: {
-      // Value types do not depend on memory layout; names may differ.
-      const std::string to = type_name(type);
-      const bool same = to == type_name(type_of(ops[2]));
-      return define(ops[0], ops[1], same ? value(ops[2]) : fmt::format("k::bit_cast<{}>({})", to, value(ops[2])));
-    }
-    default:
-      return define(ops[0], ops[1], value(ops[2]));
+void Printer::print_construct(const Instruction& i) {
+  const Type& type = get<Type>(i.result_type());
+  const std::string elements = values_with_sign(i, 0, Sign::any);
+  if (is_array(type))
+    define(i, fmt::format("{}{{{{{}}}}}", type_name(type), elements));
+  else if (type.basetype == SPIRType::Struct)
+    define(i, fmt::format("{}{{{}}}", type_name(type), elements));
+  else
+    define(i, fmt::format("{}({})", type_name(type), elements));
+}
+
+std::string Printer::part(const std::string& composite, const Type& type, const Instruction& i, std::size_t first) {
+  std::string text = composite;
+  const Type* part_type = &type;
+  for (std::size_t k = first; k < i.operand_count(); ++k) {
+    text = element(text, *part_type, i.operand(k));
+    part_type = &element_type(*part_type, i.operand(k));
   }
+  return text;
+}
+
+void Printer::print_extract(const Instruction& i) {
+  const std::uint32_t composite = i.operand(0);
+  define(i, part(value(composite), type_of(composite), i, 1));
+}
+
+void Printer::print_insert(const Instruction& i) {
+  define(i, value(i.operand(1)));
+  const std::string place = part(value(i.result()), get<Type>(i.result_type()), i, 2);
+  statement(place, " = ", value(i.operand(0)), ";");
+}
+
+void Printer::print_extract_dynamic(const Instruction& i) {
+  define(i, fmt::format("{}[{}]", value(i.operand(0)), value(i.operand(1))));
+}
+
+void Printer::print_insert_dynamic(const Instruction& i) {
+  define(i, value(i.operand(0)));
+  statement(value(i.result()), "[", value(i.operand(2)), "] = ", value(i.operand(1)), ";");
+}
+
+void Printer::print_shuffle(const Instruction& i) {
+  constexpr std::size_t first_component = 2;
+  constexpr std::uint32_t undefined = 0xffffffffu;
+  const std::uint32_t a = i.operand(0), b = i.operand(1);
+  const std::uint32_t length_of_a = type_of(a).vecsize;
+  std::string elements;
+  for (std::size_t k = first_component; k < i.operand_count(); ++k) {
+    const std::uint32_t component = i.operand(k);
+    elements += k == first_component ? "" : ", ";
+    if (component == undefined)
+      elements += "0";
+    else if (component < length_of_a)
+      elements += element(value(a), type_of(a), component);
+    else
+      elements += element(value(b), type_of(b), component - length_of_a);
+  }
+  define(i, fmt::format("{}({})", type_name(i.result_type()), elements));
+}
+
+void Printer::print_copy(const Instruction& i) { define(i, value(i.operand(0))); }
+
+void Printer::print_copy_logical(const Instruction& i) {
+  // Value types do not depend on memory layout; names may differ.
+  const std::string to = type_name(i.result_type());
+  const std::string operand = value(i.operand(0));
+  const bool same = to == type_name(type_of(i.operand(0)));
+  define(i, same ? operand : fmt::format("k::bit_cast<{}>({})", to, operand));
 }
 
 }  // namespace tandem::cpu

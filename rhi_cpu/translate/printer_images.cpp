@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "rhi/texture.hpp"
-#include "rhi_cpu/kernel/images.hpp"
+#include "rhi_cpu/translate/kernel_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
+#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -10,55 +10,10 @@ using spirv_cross::SPIRExpression;
 using spirv_cross::SPIRType;
 using spirv_cross::SPIRVariable;
 
-// A kernel reads Image::format, which is an rhi::TextureFormat.
-static_assert(static_cast<std::uint32_t>(kernel::TexelFormat::rgba8_sint) ==
-              static_cast<std::uint32_t>(rhi::TextureFormat::rgba8_sint));
-static_assert(static_cast<std::uint32_t>(kernel::TexelFormat::rgba16_float) ==
-              static_cast<std::uint32_t>(rhi::TextureFormat::rgba16_float));
-static_assert(static_cast<std::uint32_t>(kernel::TexelFormat::rg32_float) ==
-              static_cast<std::uint32_t>(rhi::TextureFormat::rg32_float));
-static_assert(static_cast<std::uint32_t>(kernel::TexelFormat::rgba32_float) ==
-              static_cast<std::uint32_t>(rhi::TextureFormat::rgba32_float));
-
 std::string Printer::texel_format(const Type& type) const {
-  switch (type.image.format) {
-    case spv::ImageFormatUnknown:
-      return "k::TexelFormat::of_the_image";
-    case spv::ImageFormatRgba8:
-      return "k::TexelFormat::rgba8_unorm";
-    case spv::ImageFormatRgba8Snorm:
-      return "k::TexelFormat::rgba8_snorm";
-    case spv::ImageFormatRgba8ui:
-      return "k::TexelFormat::rgba8_uint";
-    case spv::ImageFormatRgba8i:
-      return "k::TexelFormat::rgba8_sint";
-    case spv::ImageFormatRgba16ui:
-      return "k::TexelFormat::rgba16_uint";
-    case spv::ImageFormatRgba16i:
-      return "k::TexelFormat::rgba16_sint";
-    case spv::ImageFormatRgba16f:
-      return "k::TexelFormat::rgba16_float";
-    case spv::ImageFormatR32ui:
-      return "k::TexelFormat::r32_uint";
-    case spv::ImageFormatR32i:
-      return "k::TexelFormat::r32_sint";
-    case spv::ImageFormatR32f:
-      return "k::TexelFormat::r32_float";
-    case spv::ImageFormatRg32ui:
-      return "k::TexelFormat::rg32_uint";
-    case spv::ImageFormatRg32i:
-      return "k::TexelFormat::rg32_sint";
-    case spv::ImageFormatRg32f:
-      return "k::TexelFormat::rg32_float";
-    case spv::ImageFormatRgba32ui:
-      return "k::TexelFormat::rgba32_uint";
-    case spv::ImageFormatRgba32i:
-      return "k::TexelFormat::rgba32_sint";
-    case spv::ImageFormatRgba32f:
-      return "k::TexelFormat::rgba32_float";
-    default:
-      fail(fmt::format("SPIR-V image format {}", static_cast<std::uint32_t>(type.image.format)));
-  }
+  const char* name = texel_format_name(type.image.format);
+  if (name == nullptr) fail("image format " + image_format_name(type.image.format));
+  return fmt::format("k::TexelFormat::{}", name);
 }
 
 bool Printer::is_descriptor(const Type& type) const {
@@ -81,51 +36,50 @@ std::string Printer::descriptor_value(std::uint32_t pointer_id) {
   return type.basetype == SPIRType::Image ? text : "k::accelerationStructureEXT{" + text + "}";
 }
 
-bool Printer::print_image(spv::Op op, Operands ops, std::uint32_t length) {
-  // A mask of image operands follows; what it can say of a storage image is about memory or about signs, which the
-  // types have.
-  switch (op) {
-    case spv::OpImageRead: {
-      if (length > 4 && (ops[4] & spv::ImageOperandsSampleMask) != 0) fail("OpImageRead of a sample");
-      const Type& image = type_of(ops[2]);
-      const Type& result = get<Type>(ops[0]);
-      const std::string texel =
-          fmt::format("k::image_load<{}, {}>({}, {})", scalar_name(get<Type>(image.image.type).basetype),
-                      texel_format(image), value(ops[2]), value(ops[3]));
-      define(ops[0], ops[1], result.vecsize == 1 ? texel + ".x" : fmt::format("{}({})", type_name(result), texel));
-      return true;
-    }
-    case spv::OpImageWrite: {
-      if (length > 3 && (ops[3] & spv::ImageOperandsSampleMask) != 0) fail("OpImageWrite of a sample");
-      const Type& image = type_of(ops[0]);
-      const BaseType base = get<Type>(image.image.type).basetype;
-      const std::uint32_t components = type_of(ops[2]).vecsize;
-      std::string texel = value_as(ops[2], base);
-      for (std::uint32_t i = components; i < 4; ++i) texel += ", 0";
-      statement(fmt::format("k::image_store<{}, {}>({}, {}, {}({}));", scalar_name(base), texel_format(image),
-                            value(ops[0]), value(ops[1]), vector_name(base, 4), texel));
-      return true;
-    }
-    case spv::OpImageQuerySize:
-      define(ops[0], ops[1],
-             get<Type>(ops[0]).vecsize == 1 ? fmt::format("{}(k::image_size({}).x)", type_name(ops[0]), value(ops[2]))
-                                            : fmt::format("{}(k::image_size({}))", type_name(ops[0]), value(ops[2])));
-      return true;
-    case spv::OpImageTexelPointer: {
-      const Type& image = get<Type>(pointee(expression_type_id(ops[2])));
-      if (image.image.format != spv::ImageFormatR32ui && image.image.format != spv::ImageFormatR32i &&
-          image.image.format != spv::ImageFormatR32f)
-        fail("OpImageTexelPointer into other than r32ui, r32i and r32f images");
-      // It lives until the end of the expression that has the atomic operation.
-      const std::string pointer =
-          fmt::format("k::texel_pointer({}, {}, k::NoTexel{{}})", descriptor_value(ops[2]), value(ops[3]));
-      addresses_[ops[1]] = {.bytes = pointer, .resource = ""};
-      set<SPIRExpression>(ops[1], pointer, ops[0], true);
-      return true;
-    }
-    default:
-      return false;
-  }
+void Printer::refuse_sample(const Instruction& i, std::size_t mask) const {
+  // What a mask of image operands can say of a storage image besides is about memory or about signs, which the types
+  // have.
+  if (i.operand_count() > mask && (i.operand(mask) & spv::ImageOperandsSampleMask) != 0)
+    fail(instruction_name(i.op(), i.words()) + " of a sample");
+}
+
+void Printer::print_image_read(const Instruction& i) {
+  refuse_sample(i, 2);
+  const Type& image = type_of(i.operand(0));
+  const Type& result = get<Type>(i.result_type());
+  const std::string texel =
+      fmt::format("k::image_load<{}, {}>({}, {})", scalar_name(get<Type>(image.image.type).basetype),
+                  texel_format(image), value(i.operand(0)), value(i.operand(1)));
+  define(i, result.vecsize == 1 ? texel + ".x" : fmt::format("{}({})", type_name(result), texel));
+}
+
+void Printer::print_image_write(const Instruction& i) {
+  refuse_sample(i, 3);
+  const std::uint32_t image_id = i.operand(0), coordinate = i.operand(1), texel_id = i.operand(2);
+  const Type& image = type_of(image_id);
+  const BaseType base = get<Type>(image.image.type).basetype;
+  std::string texel = value_as(texel_id, base);
+  for (std::uint32_t k = type_of(texel_id).vecsize; k < 4; ++k) texel += ", 0";
+  statement(fmt::format("k::image_store<{}, {}>({}, {}, {}({}));", scalar_name(base), texel_format(image),
+                        value(image_id), value(coordinate), vector_name(base, 4), texel));
+}
+
+void Printer::print_image_size(const Instruction& i) {
+  const bool is_scalar = get<Type>(i.result_type()).vecsize == 1;
+  define(i, fmt::format("{}(k::image_size({}){})", type_name(i.result_type()), value(i.operand(0)),
+                        is_scalar ? ".x" : ""));
+}
+
+void Printer::print_texel_pointer(const Instruction& i) {
+  const Type& image = get<Type>(pointee(expression_type_id(i.operand(0))));
+  if (image.image.format != spv::ImageFormatR32ui && image.image.format != spv::ImageFormatR32i &&
+      image.image.format != spv::ImageFormatR32f)
+    fail("OpImageTexelPointer into other than r32ui, r32i and r32f images");
+  // It lives until the end of the expression that has the atomic operation.
+  const std::string pointer =
+      fmt::format("k::texel_pointer({}, {}, k::NoTexel{{}})", descriptor_value(i.operand(0)), value(i.operand(1)));
+  addresses_[i.result()] = {.bytes = pointer, .resource = ""};
+  set<SPIRExpression>(i.result(), pointer, i.result_type(), true);
 }
 
 }  // namespace tandem::cpu

@@ -1,62 +1,82 @@
-#include <fmt/format.h>
+#include <algorithm>
+#include <iterator>
 
 #include "rhi_cpu/translate/printer.hpp"
+#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
-using spirv_cross::Instruction;
-
-void Printer::emit_instruction(const Instruction& instruction) {
-  const std::uint32_t* ops = stream(instruction);
-  const auto op = static_cast<spv::Op>(instruction.op);
-  const std::uint32_t length = instruction.length;
-  switch (op) {
-    case spv::OpNop:
-    case spv::OpNoLine:
-      return;
-    case spv::OpLine:
-      return emit_line_directive(ops[0], ops[1]);
-    case spv::OpLoad:
-      return print_load(ops);
-    case spv::OpStore:
-      return print_store(ops[0], value(ops[1]));
-    case spv::OpCopyMemory:
-      if (is_buffer_pointer(ops[1]))
-        return print_store(ops[0], load_text(pointee(expression_type_id(ops[1])), address_of(ops[1])));
-      return print_store(ops[0], value(ops[1]));
-    case spv::OpAccessChain:
-    case spv::OpInBoundsAccessChain:
-      return print_access_chain(ops, length);
-    case spv::OpArrayLength:
-      return print_array_length(ops);
-    case spv::OpMemoryBarrier:
-      statement("k::memory_barrier();");
-      return;
-    case spv::OpFunctionCall:
-      return print_call(ops, length);
-    case spv::OpCompositeConstruct:
-    case spv::OpCompositeExtract:
-    case spv::OpCompositeInsert:
-    case spv::OpVectorExtractDynamic:
-    case spv::OpVectorInsertDynamic:
-    case spv::OpVectorShuffle:
-    case spv::OpCopyObject:
-    case spv::OpCopyLogical:
-      return print_composite(op, ops, length);
-    case spv::OpExtInst:
-      return print_extended(ops, length);
-    default:
-      break;
-  }
-  const bool atomic = (op >= spv::OpAtomicLoad && op <= spv::OpAtomicXor) || op == spv::OpAtomicFAddEXT;
-  if (atomic) return print_atomic(op, ops);
-  if (op >= spv::OpTraceRayKHR && op <= spv::OpTerminateRayKHR) return print_ray_tracing(op, ops);
-  if (op == spv::OpReportIntersectionKHR) return print_ray_tracing(op, ops);
-  if (op >= spv::OpRayQueryInitializeKHR) return print_ray_query(op, ops);
-  if (print_image(op, ops, length) || print_arithmetic(op, ops) || print_relation(op, ops) ||
-      print_conversion(op, ops) || print_bits(op, ops) || print_matrix(op, ops))
-    return;
-  fail(fmt::format("SPIR-V opcode {}", static_cast<std::uint32_t>(op)));
+Printer::PrintFunction Printer::by_hand(spv::Op op) {
+  struct Row {
+    spv::Op op;
+    PrintFunction print;
+  };
+  static constexpr Row rows[] = {
+      {spv::OpNop, &Printer::print_nothing},
+      {spv::OpNoLine, &Printer::print_nothing},
+      {spv::OpLine, &Printer::print_line},
+      {spv::OpFunctionCall, &Printer::print_call},
+      {spv::OpExtInst, &Printer::print_extended},
+      // memory
+      {spv::OpLoad, &Printer::print_load},
+      {spv::OpStore, &Printer::print_store},
+      {spv::OpCopyMemory, &Printer::print_copy_memory},
+      {spv::OpAccessChain, &Printer::print_access_chain},
+      {spv::OpInBoundsAccessChain, &Printer::print_access_chain},
+      {spv::OpArrayLength, &Printer::print_array_length},
+      {spv::OpAtomicLoad, &Printer::print_atomic_load},
+      {spv::OpAtomicStore, &Printer::print_atomic_store},
+      {spv::OpAtomicCompareExchange, &Printer::print_compare_exchange},
+      {spv::OpMemoryBarrier, &Printer::print_memory_barrier},
+      // images
+      {spv::OpImageRead, &Printer::print_image_read},
+      {spv::OpImageWrite, &Printer::print_image_write},
+      {spv::OpImageQuerySize, &Printer::print_image_size},
+      {spv::OpImageTexelPointer, &Printer::print_texel_pointer},
+      // composites
+      {spv::OpCompositeConstruct, &Printer::print_construct},
+      {spv::OpCompositeExtract, &Printer::print_extract},
+      {spv::OpCompositeInsert, &Printer::print_insert},
+      {spv::OpVectorExtractDynamic, &Printer::print_extract_dynamic},
+      {spv::OpVectorInsertDynamic, &Printer::print_insert_dynamic},
+      {spv::OpVectorShuffle, &Printer::print_shuffle},
+      {spv::OpCopyObject, &Printer::print_copy},
+      {spv::OpCopyLogical, &Printer::print_copy_logical},
+      // bits
+      {spv::OpBitcast, &Printer::print_bitcast},
+      {spv::OpConvertUToPtr, &Printer::print_bitcast},
+      {spv::OpConvertPtrToU, &Printer::print_bitcast},
+      {spv::OpBitCount, &Printer::print_bit_count},
+      // ray tracing pipelines
+      {spv::OpTraceRayKHR, &Printer::print_trace_ray},
+      {spv::OpExecuteCallableKHR, &Printer::print_execute_callable},
+      {spv::OpReportIntersectionKHR, &Printer::print_report_intersection},
+      {spv::OpIgnoreIntersectionKHR, &Printer::print_ignore_intersection},
+      {spv::OpTerminateRayKHR, &Printer::print_terminate_ray},
+  };
+  static_assert(
+      std::none_of(std::begin(rows), std::end(rows), [](const Row& row) { return find_operation(row.op) != nullptr; }),
+      "an instruction is printed in one way");
+  for (const Row& row : rows)
+    if (row.op == op) return row.print;
+  return nullptr;
 }
+
+bool Printer::prints(spv::Op op) { return find_operation(op) != nullptr || by_hand(op) != nullptr; }
+
+Instruction Printer::view(const spirv_cross::Instruction& instruction) const {
+  return {static_cast<spv::Op>(instruction.op), {stream(instruction), instruction.length}};
+}
+
+void Printer::emit_instruction(const spirv_cross::Instruction& instruction) {
+  const Instruction i = view(instruction);
+  if (const Operation* operation = find_operation(i.op())) return print_operation(i, *operation);
+  if (const PrintFunction print = by_hand(i.op())) return (this->*print)(i);
+  fail(instruction_name(i.op(), i.words()));
+}
+
+void Printer::print_line(const Instruction& i) { emit_line_directive(i.operand(0), i.operand(1)); }
+
+void Printer::print_memory_barrier(const Instruction&) { statement("k::memory_barrier();"); }
 
 }  // namespace tandem::cpu

@@ -15,12 +15,6 @@ std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
 
 }  // namespace
 
-bool Printer::is_buffer(spv::StorageClass storage) const {
-  return storage == spv::StorageClassUniform || storage == spv::StorageClassStorageBuffer ||
-         storage == spv::StorageClassPushConstant || storage == spv::StorageClassShaderRecordBufferKHR ||
-         storage == spv::StorageClassPhysicalStorageBuffer;
-}
-
 bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && is_pointer(type_of(id)); }
 
 std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const {
@@ -53,64 +47,67 @@ void Printer::index_address(Address& address, std::uint32_t index_id, std::uint3
     address.bytes += fmt::format(" + std::size_t({}) * {}", value(index_id), stride);
 }
 
-void Printer::print_access_chain(Operands ops, std::uint32_t length) {
-  if (is_buffer_pointer(ops[2]))
-    chain_in_buffer(ops, length);
+void Printer::print_access_chain(const Instruction& i) {
+  if (is_buffer_pointer(i.operand(0)))
+    chain_in_buffer(i);
   else
-    chain_in_variable(ops, length);
+    chain_in_variable(i);
 }
 
-void Printer::chain_in_buffer(Operands ops, std::uint32_t length) {
-  Address address = address_of(ops[2]);
-  const Type* type = &get<Type>(pointee(expression_type_id(ops[2])));
-  std::uint32_t type_id = pointee(expression_type_id(ops[2]));
-  std::uint32_t i = 3;
-  if (address.bytes.empty() && i < length) {
+void Printer::chain_in_buffer(const Instruction& i) {
+  const std::uint32_t pointer = i.operand(0);
+  Address address = address_of(pointer);
+  std::uint32_t type_id = pointee(expression_type_id(pointer));
+  const Type* type = &get<Type>(type_id);
+  std::size_t k = 1;
+  if (address.bytes.empty() && k < i.operand_count()) {
     // An array of descriptors, flattened in the order in which its elements are bound.
     std::string index;
-    for (; is_array(*type); ++i, type_id = type->parent_type, type = &get<Type>(type_id)) {
-      if (i == length) fail("a pointer to an array of buffers");
-      index = index.empty() ? fmt::format("std::size_t({})", value(ops[i]))
-                            : fmt::format("({} * {} + {})", index, array_length(*type), value(ops[i]));
+    for (; is_array(*type); ++k, type_id = type->parent_type, type = &get<Type>(type_id)) {
+      if (k == i.operand_count()) fail("a pointer to an array of buffers");
+      const std::string next = value(i.operand(k));
+      index = index.empty() ? fmt::format("std::size_t({})", next)
+                            : fmt::format("({} * {} + {})", index, array_length(*type), next);
     }
     address.resource += "[" + index + "]";
     address.bytes = address.resource + ".data";
   }
-  for (; i < length; ++i) {
+  for (; k < i.operand_count(); ++k) {
+    const std::uint32_t index = i.operand(k);
     if (is_array(*type)) {
-      index_address(address, ops[i], get_decoration(type_id, spv::DecorationArrayStride));
+      index_address(address, index, get_decoration(type_id, spv::DecorationArrayStride));
       type_id = type->parent_type;
     } else if (type->basetype == SPIRType::Struct) {
-      const std::uint32_t member = get<SPIRConstant>(ops[i]).scalar();
+      const std::uint32_t member = get<SPIRConstant>(index).scalar();
       const std::uint32_t self = type->self;
       address.offset += get_member_decoration(self, member, spv::DecorationOffset);
       address.matrix_stride = matrix_stride(self, member);
       address.row_major = has_member_decoration(self, member, spv::DecorationRowMajor);
       type_id = type->member_types[member];
     } else if (type->columns > 1) {
-      index_address(address, ops[i], address.row_major ? scalar_size(*type) : address.matrix_stride);
+      index_address(address, index, address.row_major ? scalar_size(*type) : address.matrix_stride);
       address.component_stride = address.row_major ? address.matrix_stride : 0;
       type_id = type->parent_type;
     } else {
-      index_address(address, ops[i], address.component_stride != 0 ? address.component_stride : scalar_size(*type));
+      index_address(address, index, address.component_stride != 0 ? address.component_stride : scalar_size(*type));
       type_id = type->parent_type;
     }
     type = &get<Type>(type_id);
   }
-  addresses_[ops[1]] = address;
-  set<SPIRExpression>(ops[1], fmt::format("({})", printed(address)), ops[0], true);
+  addresses_[i.result()] = address;
+  set<SPIRExpression>(i.result(), fmt::format("({})", printed(address)), i.result_type(), true);
 }
 
-void Printer::chain_in_variable(Operands ops, std::uint32_t length) {
-  std::string text = value(ops[2]);
-  const Type* type = &get<Type>(pointee(expression_type_id(ops[2])));
-  for (std::uint32_t i = 3; i < length; ++i) {
-    const auto* constant = maybe_get<SPIRConstant>(ops[i]);
+void Printer::chain_in_variable(const Instruction& i) {
+  std::string text = value(i.operand(0));
+  const Type* type = &get<Type>(pointee(expression_type_id(i.operand(0))));
+  for (std::size_t k = 1; k < i.operand_count(); ++k) {
+    const auto* constant = maybe_get<SPIRConstant>(i.operand(k));
     const std::uint32_t index = constant != nullptr ? constant->scalar() : 0;
-    text = constant != nullptr ? element(text, *type, index) : fmt::format("{}[{}]", text, value(ops[i]));
+    text = constant != nullptr ? element(text, *type, index) : fmt::format("{}[{}]", text, value(i.operand(k)));
     type = &element_type(*type, index);
   }
-  set<SPIRExpression>(ops[1], text, ops[0], true);
+  set<SPIRExpression>(i.result(), text, i.result_type(), true);
 }
 
 std::string Printer::load_text(std::uint32_t type_id, const Address& address) {
@@ -188,84 +185,42 @@ void Printer::print_struct_memory_functions() {
   });
 }
 
-void Printer::print_load(Operands ops) {
-  if (is_buffer_pointer(ops[2])) {
-    define(ops[0], ops[1], load_text(ops[0], address_of(ops[2])));
-  } else if (is_descriptor(get<Type>(ops[0])) && !is_array(get<Type>(ops[0]))) {
-    define(ops[0], ops[1], descriptor_value(ops[2]));
-  } else {
-    define(ops[0], ops[1], value(ops[2]));
-  }
+void Printer::print_load(const Instruction& i) {
+  const std::uint32_t pointer = i.operand(0);
+  const Type& type = get<Type>(i.result_type());
+  if (is_buffer_pointer(pointer))
+    define(i, load_text(i.result_type(), address_of(pointer)));
+  else if (is_descriptor(type) && !is_array(type))
+    define(i, descriptor_value(pointer));
+  else
+    define(i, value(pointer));
 }
 
-void Printer::print_store(std::uint32_t pointer_id, const std::string& text) {
+void Printer::print_store(const Instruction& i) { print_store_to(i.operand(0), value(i.operand(1))); }
+
+void Printer::print_copy_memory(const Instruction& i) {
+  const std::uint32_t to = i.operand(0), from = i.operand(1);
+  if (is_buffer_pointer(from))
+    print_store_to(to, load_text(pointee(expression_type_id(from)), address_of(from)));
+  else
+    print_store_to(to, value(from));
+}
+
+void Printer::print_store_to(std::uint32_t pointer_id, const std::string& text) {
   if (is_buffer_pointer(pointer_id))
     statement(store_text(pointee(expression_type_id(pointer_id)), address_of(pointer_id), text), ";");
   else
     statement(value(pointer_id), " = ", text, ";");
 }
 
-void Printer::print_array_length(Operands ops) {
-  const Address address = address_of(ops[2]);
+void Printer::print_array_length(const Instruction& i) {
+  const std::uint32_t pointer = i.operand(0), member = i.operand(1);
+  const Address address = address_of(pointer);
   if (address.resource.empty()) fail("OpArrayLength of a buffer that is a function parameter");
-  const Type& type = get<Type>(pointee(expression_type_id(ops[2])));
-  define(ops[0], ops[1],
-         fmt::format("k::runtime_array_length({}.size, {}, {})", address.resource,
-                     get_member_decoration(type.self, ops[3], spv::DecorationOffset),
-                     get_decoration(type.member_types[ops[3]], spv::DecorationArrayStride)));
-}
-
-void Printer::print_atomic(spv::Op op, Operands ops) {
-  const bool stores = op == spv::OpAtomicStore;
-  const std::uint32_t pointer_id = stores ? ops[0] : ops[2];
-  if (!is_buffer_pointer(pointer_id) && type_of(pointer_id).storage != spv::StorageClassImage)
-    fail("an atomic operation outside of buffers and images");
-  const Type& type = get<Type>(pointee(expression_type_id(pointer_id)));
-  const std::string address = printed(address_of(pointer_id));
-  const auto call = [&](const char* function, BaseType base, const std::string& arguments) {
-    return fmt::format("k::atomic_{}<{}>({}{})", function, scalar_name(base), address, arguments);
-  };
-  if (stores) {
-    statement(call("store", type.basetype, ", " + value(ops[3])), ";");
-    return;
-  }
-  const auto define_call = [&](const char* function, BaseType base, const std::string& argument) {
-    define_as(ops[0], ops[1], call(function, base, ", " + argument), base);
-  };
-  const BaseType base = type.basetype;
-  switch (op) {
-    case spv::OpAtomicLoad:
-      return define(ops[0], ops[1], call("load", base, ""));
-    case spv::OpAtomicExchange:
-      return define_call("exchange", base, value_as(ops[5], base));
-    case spv::OpAtomicCompareExchange:
-      return define_call("compare_exchange", base, value_as(ops[7], base) + ", " + value_as(ops[6], base));
-    case spv::OpAtomicIIncrement:
-      return define_call("add", base, "1");
-    case spv::OpAtomicIDecrement:
-      return define_call("subtract", base, "1");
-    case spv::OpAtomicIAdd:
-    case spv::OpAtomicFAddEXT:
-      return define_call("add", base, value_as(ops[5], base));
-    case spv::OpAtomicISub:
-      return define_call("subtract", base, value_as(ops[5], base));
-    case spv::OpAtomicSMin:
-      return define_call("min", to_signed(base), value_as(ops[5], to_signed(base)));
-    case spv::OpAtomicUMin:
-      return define_call("min", to_unsigned(base), value_as(ops[5], to_unsigned(base)));
-    case spv::OpAtomicSMax:
-      return define_call("max", to_signed(base), value_as(ops[5], to_signed(base)));
-    case spv::OpAtomicUMax:
-      return define_call("max", to_unsigned(base), value_as(ops[5], to_unsigned(base)));
-    case spv::OpAtomicAnd:
-      return define_call("and", base, value_as(ops[5], base));
-    case spv::OpAtomicOr:
-      return define_call("or", base, value_as(ops[5], base));
-    case spv::OpAtomicXor:
-      return define_call("xor", base, value_as(ops[5], base));
-    default:
-      fail(fmt::format("atomic SPIR-V opcode {}", static_cast<std::uint32_t>(op)));
-  }
+  const Type& type = get<Type>(pointee(expression_type_id(pointer)));
+  define(i, fmt::format("k::runtime_array_length({}.size, {}, {})", address.resource,
+                        get_member_decoration(type.self, member, spv::DecorationOffset),
+                        get_decoration(type.member_types[member], spv::DecorationArrayStride)));
 }
 
 }  // namespace tandem::cpu

@@ -1,9 +1,9 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/translate/printer.hpp"
+#include "rhi_cpu/translate/spirv_names.hpp"
+#include "rhi_cpu/translate/value_layout.hpp"
 
 namespace tandem::cpu {
 
@@ -13,14 +13,6 @@ using spirv_cross::SPIRType;
 using spirv_cross::SPIRVariable;
 
 bool Printer::is_traced() const { return reflection_.stage != rhi::ShaderStage::compute; }
-
-bool Printer::is_payload(spv::StorageClass storage) const {
-  return storage == spv::StorageClassRayPayloadKHR || storage == spv::StorageClassCallableDataKHR;
-}
-
-bool Printer::is_incoming_payload(spv::StorageClass storage) const {
-  return storage == spv::StorageClassIncomingRayPayloadKHR || storage == spv::StorageClassIncomingCallableDataKHR;
-}
 
 void Printer::set_up_endings() {
   // OpIgnoreIntersectionKHR and OpTerminateRayKHR end blocks. They become instructions in front of a Kill, which
@@ -48,7 +40,7 @@ void Printer::set_up_endings() {
             in_block = true;
             break;
           case spv::OpFunctionCall:
-            in_block |= self(self, stream(instruction)[2]);
+            in_block |= self(self, view(instruction).operand(0));
             break;
           default:
             break;
@@ -74,26 +66,6 @@ void Printer::print_call_ending(std::uint32_t function_id) {
   if (ending_functions_.contains(function_id)) statement("if (ended) ", ending());
 }
 
-std::uint32_t Printer::value_alignment(const Type& type) const {
-  if (is_array(type)) return value_alignment(get<Type>(type.parent_type));
-  if (is_pointer(type)) return sizeof(void*);
-  if (type.basetype != SPIRType::Struct) return type.basetype == SPIRType::Boolean ? 1 : type.width / 8;
-  std::uint32_t alignment = 1;
-  for (const auto& member : type.member_types) alignment = std::max(alignment, value_alignment(get<Type>(member)));
-  return alignment;
-}
-
-std::uint32_t Printer::value_size(const Type& type) const {
-  if (is_array(type)) return value_size(get<Type>(type.parent_type)) * array_length(type);
-  if (is_pointer(type)) return sizeof(void*);
-  if (type.basetype != SPIRType::Struct) return value_alignment(type) * type.vecsize * type.columns;
-  const auto aligned = [](std::uint32_t size, std::uint32_t to) { return (size + to - 1) / to * to; };
-  std::uint32_t size = 0;
-  for (const auto& member : type.member_types)
-    size = aligned(size, value_alignment(get<Type>(member))) + value_size(get<Type>(member));
-  return aligned(size, value_alignment(type));
-}
-
 void Printer::print_traced_members() {
   statement("k::ShaderCall& shader_call;");
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
@@ -113,9 +85,9 @@ void Printer::print_traced_members() {
     const std::string type = type_name(type_id);
     if (incoming) {
       incoming_payload_type_ = type;
-    } else if (value_size(get<Type>(type_id)) > kernel::max_hit_attribute_size) {
-      fail(fmt::format("a hit attribute of {} bytes, which is more than {},", value_size(get<Type>(type_id)),
-                       kernel::max_hit_attribute_size));
+    } else if (const std::uint32_t size = value_layout(*this, get<Type>(type_id)).size;
+               size > kernel::max_hit_attribute_size) {
+      fail(fmt::format("a hit attribute of {} bytes, which is more than {},", size, kernel::max_hit_attribute_size));
     }
     statement(type, "& ", to_name(id), " = *static_cast<", type, "*>(shader_call.",
               incoming ? "payload" : "hit_attributes", ");");
@@ -134,35 +106,32 @@ void Printer::print_shader_call() {
             "}.entry_point();\n}\n");
 }
 
-void Printer::print_ray_tracing(spv::Op op, Operands ops) {
-  switch (op) {
-    case spv::OpConvertUToAccelerationStructureKHR:
-      return define(ops[0], ops[1], fmt::format("k::structure_at({})", value_unsigned(ops[2])));
-    case spv::OpTraceRayKHR:
-      statement(fmt::format("k::traceRayEXT(shader_call, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {});", value(ops[0]),
-                            value_unsigned(ops[1]), value_unsigned(ops[2]), value_unsigned(ops[3]),
-                            value_unsigned(ops[4]), value_unsigned(ops[5]), value(ops[6]), value(ops[7]), value(ops[8]),
-                            value(ops[9]), value(ops[10])));
-      return;
-    case spv::OpExecuteCallableKHR:
-      statement(fmt::format("k::executeCallableEXT(shader_call, {}, {});", value_unsigned(ops[0]), value(ops[1])));
-      return;
-    case spv::OpReportIntersectionKHR:
-      define(ops[0], ops[1],
-             fmt::format("k::reportIntersectionEXT(shader_call, {}, {})", value(ops[2]), value_unsigned(ops[3])));
-      statement("if (shader_call.decision == k::HitDecision::terminate) ", ending());
-      return;
-    case spv::OpIgnoreIntersectionKHR:
-      statement("shader_call.decision = k::HitDecision::ignore;");
-      statement(ending());
-      return;
-    case spv::OpTerminateRayKHR:
-      statement("shader_call.decision = k::HitDecision::terminate;");
-      statement(ending());
-      return;
-    default:
-      fail(fmt::format("SPIR-V opcode {}", static_cast<std::uint32_t>(op)));
-  }
+void Printer::print_trace_ray(const Instruction& i) {
+  std::string arguments = value(i.operand(0));
+  for (std::size_t k = 1; k <= 5; ++k) arguments += ", " + value_with_sign(i.operand(k), Sign::as_unsigned);
+  for (std::size_t k = 6; k <= 10; ++k) arguments += ", " + value(i.operand(k));
+  statement("k::traceRayEXT(shader_call, ", arguments, ");");
+}
+
+void Printer::print_execute_callable(const Instruction& i) {
+  statement(fmt::format("k::executeCallableEXT(shader_call, {}, {});", value_with_sign(i.operand(0), Sign::as_unsigned),
+                        value(i.operand(1))));
+}
+
+void Printer::print_report_intersection(const Instruction& i) {
+  define(i, fmt::format("k::reportIntersectionEXT(shader_call, {}, {})", value(i.operand(0)),
+                        value_with_sign(i.operand(1), Sign::as_unsigned)));
+  statement("if (shader_call.decision == k::HitDecision::terminate) ", ending());
+}
+
+void Printer::print_ignore_intersection(const Instruction&) {
+  statement("shader_call.decision = k::HitDecision::ignore;");
+  statement(ending());
+}
+
+void Printer::print_terminate_ray(const Instruction&) {
+  statement("shader_call.decision = k::HitDecision::terminate;");
+  statement(ending());
 }
 
 std::string Printer::traced_built_in(spv::BuiltIn built_in) const {
@@ -219,7 +188,7 @@ std::string Printer::traced_built_in(spv::BuiltIn built_in) const {
         break;
     }
   }
-  fail(fmt::format("built-in {} in this shader stage", static_cast<std::uint32_t>(built_in)));
+  fail("built-in " + built_in_name(built_in) + " in this shader stage");
 }
 
 }  // namespace tandem::cpu

@@ -18,49 +18,6 @@ std::uint32_t Printer::array_length(const Type& type) const {
 
 bool Printer::is_opaque(const Type& type) const { return type.basetype == SPIRType::RayQuery || is_descriptor(type); }
 
-std::string Printer::scalar_name(BaseType base) const {
-  switch (base) {
-    case SPIRType::Void:
-      return "void";
-    case SPIRType::Boolean:
-      return "bool";
-    case SPIRType::SByte:
-      return "std::int8_t";
-    case SPIRType::UByte:
-      return "std::uint8_t";
-    case SPIRType::Short:
-      return "std::int16_t";
-    case SPIRType::UShort:
-      return "std::uint16_t";
-    case SPIRType::Int:
-      return "int";
-    case SPIRType::UInt:
-      return "k::uint";
-    case SPIRType::Int64:
-      return "std::int64_t";
-    case SPIRType::UInt64:
-      return "std::uint64_t";
-    case SPIRType::Float:
-      return "float";
-    case SPIRType::Double:
-      return "double";
-    default:
-      fail(fmt::format("SPIRV-Cross base type {}", static_cast<int>(base)));
-  }
-}
-
-std::string Printer::vector_name(BaseType base, std::uint32_t length) const {
-  if (length == 1) return scalar_name(base);
-  const char* prefix = base == SPIRType::Float     ? ""
-                       : base == SPIRType::Int     ? "i"
-                       : base == SPIRType::UInt    ? "u"
-                       : base == SPIRType::Boolean ? "b"
-                       : base == SPIRType::Double  ? "d"
-                                                   : nullptr;
-  if (prefix == nullptr) return fmt::format("k::vector<{}, {}>", length, scalar_name(base));
-  return fmt::format("k::{}vec{}", prefix, length);
-}
-
 std::string Printer::type_name(const Type& type) {
   if (is_pointer(type)) {
     if (type.storage != spv::StorageClassPhysicalStorageBuffer) fail("a pointer as a value");

@@ -1,4 +1,4 @@
-// Next event estimation: light that comes from a light straight to a vertex.
+// Next event estimation: radiance that arrives at a vertex directly from a sampled light.
 
 #ifndef TANDEM_INTEGRATOR_DIRECT_LIGHT
 #define TANDEM_INTEGRATOR_DIRECT_LIGHT

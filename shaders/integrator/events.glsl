@@ -63,7 +63,7 @@ struct PathSummary {
   vec3 radiance;
   uint ray_count;
   uint event_count;
-  uint digest;  // of all that is written down, but what devices report of a hit beyond the primitive
+  uint digest;  // of all recorded words except what devices report of a hit beyond the primitive
   uint reserved_0;
   uint reserved_1;
 };
@@ -145,7 +145,7 @@ void event_camera(uvec2 pixel, uint sample_index, float time, vec3 origin, vec3 
   write_event(PLACE_CAMERA, EVENT_CAMERA, pixel, event_words(origin, sample_index), event_words(direction, time), uvec4(0), uvec4(0));
 }
 
-/// Whether the segment is to be traced. All before it is written down.
+/// Whether the segment is to be traced. All before it is recorded.
 bool event_segment(uint depth, uint crossings, vec3 origin, vec3 direction, float ray_length, vec3 throughput,
                    vec3 radiance, float eta_scale, uint medium, vec3 previous_position, float previous_density,
                    uint diffuse_count, uint glossy_count, uint specular_count) {

@@ -32,7 +32,7 @@ void count_scattering(inout ScatteringCount count, uint lobe) {
   }
 }
 
-/// Whether the path has scattered more often than the settings allow, so that it may only meet a light yet.
+/// Whether the path has scattered more often than the settings allow: from here on it may only meet a light.
 bool exceeds_depths(ScatteringCount count) {
   if (!FEATURE_OPTIONS) return false;
   bool direct = render.integrator == INTEGRATOR_DIRECT;

@@ -7,7 +7,7 @@
 #include "integrator/medium.glsl"
 #include "trace.glsl"
 
-// So many boundaries of media does a ray cross before it is given up. It keeps paths finite whatever rounding does.
+// A ray that crosses more boundaries of media than this is ended: paths stay finite whatever rounding does.
 const uint MAX_CROSSINGS = 64;
 
 /// Whether a surface is nothing but the boundary of a medium.

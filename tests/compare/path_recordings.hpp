@@ -18,7 +18,7 @@ inline pathtracer::PathEvent event(pathtracer::EventKind kind, std::uint32_t seg
 inline pathtracer::PathEvent segment_event(std::uint32_t segment, const glm::vec3& origin, const glm::vec3& direction) {
   namespace word = pathtracer::event_word;
   pathtracer::PathEvent result = event(pathtracer::EventKind::segment, segment);
-  result.words[word::depth] = segment;
+  result.words[word::segment_depth] = segment;
   result.set(word::segment_origin, origin);
   result.set(word::segment_direction, direction);
   result.set(word::segment_throughput, glm::vec3(0.5f, 0.25f, 0));

@@ -8,19 +8,15 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "compare/cause/classification.hpp"
-#include "compare/metrics/metrics.hpp"
-#include "compare/verdict/thresholds.hpp"
-#include "compare/verdict/verdict.hpp"
+#include "compare/session/comparison.hpp"
 #include "devices/devices.hpp"
 #include "pathtracer/load/scene_loader.hpp"
-#include "pathtracer/render/renderer.hpp"
 
 namespace {
 
@@ -35,17 +31,6 @@ struct Options {
   std::uint32_t size = 64;
   std::uint32_t samples = 4;
 };
-
-/// A device, and its programs for all scenes.
-struct Device {
-  rhi::DeviceHandle handle;
-  pathtracer::ProgramStoreHandle programs;
-};
-
-Device open(const std::string& name) {
-  const rhi::DeviceHandle handle = create_device({.name = name});
-  return {handle, std::make_shared<pathtracer::ProgramStore>(handle)};
-}
 
 struct Tally {
   std::uint64_t pixels = 0, differing = 0, alarms = 0;
@@ -105,28 +90,27 @@ void print_mismatches(const std::filesystem::path& path, std::uint32_t seed, con
 }
 
 /// All seeds of one scene. Alarms are printed as they come.
-Tally examine(const std::filesystem::path& path, const Options& options, const Device& device_a, const Device& device_b,
-              const Device& device_arbiter) {
-  const pathtracer::Scene scene = pathtracer::load_scene(path);
-  const compare::Thresholds thresholds = compare::thresholds_of(path);
-  pathtracer::RenderSettings settings = pathtracer::render_settings(scene.settings);
-  settings.width = settings.height = options.size;
-  settings.planned_samples = options.samples;
-  const auto renderer = [&](const Device& device) {
-    return pathtracer::Renderer(device.handle, scene, settings, {}, device.programs);
-  };
-  pathtracer::Renderer a = renderer(device_a), b = renderer(device_b), arbiter = renderer(device_arbiter);
+Tally examine(const std::filesystem::path& path, const Options& options, const compare::ComparedDevices& devices) {
+  compare::Job job{.scene = pathtracer::load_scene(path), .settings = {}, .samples = options.samples, .file = path};
+  job.settings = pathtracer::render_settings(job.scene.settings);
+  job.settings.width = job.settings.height = options.size;
+  job.settings.planned_samples = options.samples;
+  compare::ComparisonOptions comparison_options;
+  comparison_options.thresholds = compare::thresholds_of(path);
+  comparison_options.classify = true;
+  // One session: no seed uploads the scene again.
+  compare::Session session = compare::prepare(devices, std::move(job), comparison_options);
   Tally tally;
   for (std::uint32_t i = 0; i < options.seeds; ++i) {
+    pathtracer::RenderSettings settings = session.job.settings;
     settings.seed = options.first_seed + i;
-    for (pathtracer::Renderer* renderer : {&a, &b, &arbiter}) renderer->restart(settings);
-    a.render(options.samples);
-    b.render(options.samples);
-    const pathtracer::Image image_a = a.image(), image_b = b.image();
-    const compare::Classification found = compare::classify({a, b, arbiter, scene}, image_a, image_b, options.samples);
-    const compare::Verdict verdict = compare::judge(
-        {.metrics = compare::measure(image_a, image_b), .mismatches = found.mismatches(), .bias = {}}, thresholds);
-    Tally one{.pixels = image_a.pixels.size(),
+    session.a.restart(settings);
+    session.b.restart(settings);
+    session.arbiter->configure(settings);
+    const compare::Comparison comparison = compare::compare_devices(session);
+    const compare::Classification& found = *comparison.classification;
+    const compare::Verdict& verdict = comparison.verdict;
+    Tally one{.pixels = comparison.metrics.pixels,
               .differing = found.differing_pixels,
               .alarms = verdict.agree ? 0u : 1u,
               .counts = found.divergence_counts};
@@ -141,11 +125,12 @@ Tally examine(const std::filesystem::path& path, const Options& options, const D
 
 int run(const Options& options) {
   const std::vector<std::filesystem::path> scenes = scenes_of(options);
-  const Device a = open(options.a), b = open(options.b), arbiter = open(options.arbiter);
+  const compare::ComparedDevices devices = compare::with_programs(
+      create_device({.name = options.a}), create_device({.name = options.b}), create_device({.name = options.arbiter}));
   print_header();
   Tally all;
   for (const std::filesystem::path& scene : scenes) {
-    const Tally tally = examine(scene, options, a, b, arbiter);
+    const Tally tally = examine(scene, options, devices);
     print(scene.filename().string(), tally);
     all.add(tally);
   }

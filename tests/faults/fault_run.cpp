@@ -13,6 +13,7 @@
 #include "compare/path/event_fields.hpp"
 #include "compare/probe/probing.hpp"
 #include "pathtracer/load/scene_loader.hpp"
+#include "pathtracer/render/path_recorder.hpp"
 #include "pathtracer/render/renderer.hpp"
 #include "tests/faults/faulty_device.hpp"
 
@@ -120,11 +121,11 @@ bool is_explained(const pathtracer::PathEvents& a, const pathtracer::PathEvents&
 }
 
 /// Whether what is said of where a path first parts agrees with the bare recordings; "" or what does not.
-std::string check_against_recordings(const compare::ClassifiedPath& path, pathtracer::Renderer& a,
-                                     pathtracer::Renderer& b) {
+std::string check_against_recordings(const compare::ClassifiedPath& path, pathtracer::SceneOnDevice& a,
+                                     pathtracer::SceneOnDevice& b) {
   const std::vector<pathtracer::PathStart> start = {{.path = path.path}};
-  const pathtracer::PathEvents events_a = a.record_paths(start).front();
-  const pathtracer::PathEvents events_b = b.record_paths(start).front();
+  const pathtracer::PathEvents events_a = record_paths(a, start).front();
+  const pathtracer::PathEvents events_b = record_paths(b, start).front();
   const compare::Divergence& divergence = path.divergences.front();
   const std::string place =
       fmt::format("pixel {},{} sample {}", path.path.pixel.x, path.path.pixel.y, path.path.sample);
@@ -141,13 +142,12 @@ std::string check_against_recordings(const compare::ClassifiedPath& path, pathtr
 }
 
 /// Whether the recordings of paths all over the picture have the same bits, observations included.
-bool same_recordings(pathtracer::Renderer& a, pathtracer::Renderer& b) {
-  return a.record_paths(spread_paths()) == b.record_paths(spread_paths());
+bool same_recordings(pathtracer::SceneOnDevice& a, pathtracer::SceneOnDevice& b) {
+  return record_paths(a, spread_paths()) == record_paths(b, spread_paths());
 }
 
-/// Takes what a classification says into the finding. Of a fault that does harm only mismatches are of interest, of
-/// another whatever differs.
-/// @param counts whether a divergence of this class counts
+/// Adds the result of a classification to the finding.
+/// @param mismatches_only for a harmful fault, of which only mismatches count; else every divergence counts
 void take(const compare::Classification& found, bool mismatches_only, Finding& finding) {
   Tally tally;
   for (const compare::ClassifiedPath& path : found.paths) {
@@ -203,7 +203,8 @@ std::string problem_of(const Fault& fault, const Finding& finding) {
 
 struct FaultRunner::Reference {
   pathtracer::Scene scene;
-  pathtracer::Renderer a, arbiter;
+  pathtracer::Renderer a;
+  pathtracer::SceneOnDevice arbiter;
   pathtracer::Image image;
   std::vector<compare::PathRay> rays;  ///< for probes
 };
@@ -217,13 +218,13 @@ FaultRunner::Reference& FaultRunner::reference(const std::string& scene, pathtra
   if (known) return *known;
   pathtracer::Scene loaded = pathtracer::load_scene(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes" / scene);
   pathtracer::Renderer a(device_, loaded, settings(), form);
-  pathtracer::Renderer arbiter(arbiter_, loaded, settings(), form);
+  pathtracer::SceneOnDevice arbiter(arbiter_, loaded, settings(), form);
   a.render(samples);
   pathtracer::Image image = a.image();
 
   const std::vector<pathtracer::PathStart> starts = spread_paths();
   std::vector<compare::PathRay> rays;
-  const std::vector<pathtracer::PathEvents> recorded = a.record_paths(starts);
+  const std::vector<pathtracer::PathEvents> recorded = record_paths(a.scene(), starts);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     std::uint32_t index = 0;
     for (const pathtracer::TracedRay& ray : pathtracer::rays_of(starts[i].path, recorded[i]))
@@ -242,14 +243,14 @@ Finding FaultRunner::run(const Fault& fault) {
   pathtracer::Renderer b(faulty, truth.scene, settings(), fault.form);
   b.render(samples);
   const compare::Classification found =
-      compare::classify({truth.a, b, truth.arbiter, truth.scene}, truth.image, b.image(), samples,
+      compare::classify({truth.a.scene(), b.scene(), truth.arbiter, truth.scene}, truth.image, b.image(), samples,
                         {.pixel_limit = classed_pixels, .survey_pixels = surveyed_pixels});
   take(found, fault.harmful, finding);
   for (const compare::ClassifiedPath& path : found.paths) {
     if (!finding.problem.empty()) break;
-    if (!path.divergences.empty()) finding.problem = check_against_recordings(path, truth.a, b);
+    if (!path.divergences.empty()) finding.problem = check_against_recordings(path, truth.a.scene(), b.scene());
   }
-  if (finding.found_by == Finder::nobody && !fault.harmful && !same_recordings(truth.a, b)) {
+  if (finding.found_by == Finder::nobody && !fault.harmful && !same_recordings(truth.a.scene(), b.scene())) {
     // What devices may report otherwise is no divergence.
     finding.found_by = Finder::survey;
     finding.worst = DifferenceClass::rounding;

@@ -66,7 +66,8 @@ TEST_CASE("The tables say of each fault whether it was found as declared") {
   wrong.problem = "too late";
   const std::vector<FaultRow> rows = {{fault, right}, {fault, wrong}};
   CHECK(summary(rows) ==
-        "1 of 2 faults that do harm are found, in the right class, bounce and field; 0 of 0 that do none are accepted");
+        "1 of 2 harmful faults are detected, in the right class, bounce and field; 0 of 0 harmless faults and 0 of 0 "
+        "unmodified controls are accepted");
   CHECK(text_table(rows) ==
         "fault         scene  found by  class     bounce  where        as declared\n"
         "mask-ignored  a.obj  picture   mismatch  3       ray: answer  yes\n"

@@ -34,15 +34,20 @@ Cells cells_of(const FaultRow& row) {
 }  // namespace
 
 std::string summary(std::span<const FaultRow> rows) {
-  std::size_t harmful = 0, found = 0, harmless = 0, accepted = 0;
+  struct Count {
+    std::size_t right = 0, all = 0;
+  };
+  Count harmful, harmless, controls;
   for (const FaultRow& row : rows) {
-    (row.fault.harmful ? harmful : harmless) += 1;
-    if (row.finding.problem.empty()) (row.fault.harmful ? found : accepted) += 1;
+    const bool is_control = row.fault.name.starts_with("none");
+    Count& count = row.fault.harmful ? harmful : is_control ? controls : harmless;
+    count.all += 1;
+    if (row.finding.problem.empty()) count.right += 1;
   }
   return fmt::format(
-      "{} of {} faults that do harm are found, in the right class, bounce and field; {} of {} that do none are "
-      "accepted",
-      found, harmful, accepted, harmless);
+      "{} of {} harmful faults are detected, in the right class, bounce and field; {} of {} harmless faults and {} of "
+      "{} unmodified controls are accepted",
+      harmful.right, harmful.all, harmless.right, harmless.all, controls.right, controls.all);
 }
 
 std::string text_table(std::span<const FaultRow> rows) {
@@ -64,11 +69,12 @@ std::string markdown_page(std::span<const FaultRow> rows) {
   std::string page = fmt::format(
       R"(# Faults that a comparison finds
 
-Written by `tandem_faults --format markdown`, which puts one fault after another into a device (`tests/faults`: edits of its SPIR-V,
-builds, uploads and commands) and compares it with the same device without. A fault that does harm has to be found, in the
-class mismatch, at the bounce (0: the camera's segment) and in the field where it acts; one that does none has to be accepted.
-*Found by* is the first that sees it: `picture` (pixels differ), `survey` (they do not, but what is recorded of paths all over the
-picture does) or `probes` (only rays asked in other ways do). *Where* is the event and its field, or the probe's trial.
+Written by `tandem_faults --format markdown`, which injects one fault after another into a device (`tests/faults`: edits
+of its SPIR-V, builds, uploads and commands) and compares it with the same device without the fault. A harmful fault must
+be detected as a mismatch, at the bounce (0: the camera's segment) and in the field where it acts; a harmless one must be
+accepted, and so must the controls (`none...`), in which nothing is changed. *Found by* is the first part of the
+comparison that detects the fault: `picture` (pixels differ), `survey` (pixels agree, recorded paths differ) or `probes`
+(only the probes' rays differ). *Where* is the event and its field, or the probe's trial.
 
 {}.
 

@@ -15,7 +15,8 @@ struct FaultRow {
   Finding finding;
 };
 
-/// How many faults did harm, were found and classed as they should be, and how many did none and were accepted.
+/// How many harmful faults were detected and classified as declared, and how many harmless ones and controls (faults
+/// called "none...") were accepted.
 std::string summary(std::span<const FaultRow> rows);
 
 /// An aligned table, with a line break at its end.

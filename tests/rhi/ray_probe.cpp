@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "rhi/build.hpp"
 #include "tests/support/device_test.hpp"
 
 namespace tandem::test {
@@ -82,12 +83,7 @@ rhi::TriangleGeometry triangles_of(rhi::Device& device, const std::vector<float>
 
 rhi::AccelerationStructureHandle build_bottom_level(rhi::Device& device, std::vector<rhi::Geometry> geometries,
                                                     const std::string& label) {
-  const rhi::BottomLevelDesc desc = {.geometries = std::move(geometries), .label = label};
-  const rhi::AccelerationStructureHandle structure = device.create_bottom_level(desc);
-  const rhi::CommandListHandle list = device.create_command_list("build " + label);
-  list->build_bottom_level(structure, desc);
-  device.submit(list);
-  return structure;
+  return rhi::build_bottom_level(device, {.geometries = std::move(geometries), .label = label});
 }
 
 rhi::AccelerationStructureHandle build_top_level(rhi::Device& device, const std::vector<rhi::InstanceDesc>& instances,
@@ -96,11 +92,7 @@ rhi::AccelerationStructureHandle build_top_level(rhi::Device& device, const std:
   desc.instances.buffer = buffer_of(device, instances, "instances");
   desc.instance_count = static_cast<std::uint32_t>(instances.size());
   desc.label = label;
-  const rhi::AccelerationStructureHandle structure = device.create_top_level(desc);
-  const rhi::CommandListHandle list = device.create_command_list("build " + label);
-  list->build_top_level(structure, desc);
-  device.submit(list);
-  return structure;
+  return rhi::build_top_level(device, desc);
 }
 
 }  // namespace tandem::test

@@ -44,7 +44,7 @@ TEST_CASE("names that name no device are errors that say which there are") {
   CHECK_ERROR(no_such_device, "vulkan:0 (", vulkan::create_device(named("vulkan:99")));
   for (const char* name :
        {"vulkan:", "vulkan:x", "vulkan:0x", "vulkan:-1", "vulkan0", "", "vulkan:99999999999999999999"})
-    CHECK_ERROR(no_such_device, "names no Vulkan device", vulkan::create_device(named(name)));
+    CHECK_ERROR(no_such_device, "is not a Vulkan device", vulkan::create_device(named(name)));
 }
 
 TEST_CASE("without a driver there is one clear sentence and no device") {

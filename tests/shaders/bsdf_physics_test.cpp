@@ -126,7 +126,7 @@ TANDEM_DEVICE_TEST("No BSDF gives back more light than arrives, and white ones l
   }
 }
 
-TANDEM_DEVICE_TEST("Every BSDF is reciprocal, up to the eta_scale of radiance by refraction") {
+TANDEM_DEVICE_TEST("Every BSDF is reciprocal, up to the scaling of radiance by refraction") {
   std::vector<test::BsdfMaterial> materials = test::wide_materials();
   for (const auto& list : {test::extreme_materials(), test::specular_materials()})
     materials.insert(materials.end(), list.begin(), list.end());

@@ -111,7 +111,7 @@ TANDEM_DEVICE_TEST("Shadow rays go through boundaries and lose what their medium
         ratio ==
         doctest::Approx(std::exp(-static_cast<double>(scene.media[0].absorption[static_cast<int>(c)]))).epsilon(1e-4));
   }
-  // Around everything too: the light's light comes 10 units, the camera's sqrt(2).
+  // Around everything too: light from the emitter travels 10 units, light to the camera sqrt(2).
   constants.medium = 0;
   const test::Rendering around = test::path_trace(device, pipeline, test::upload(device, scene), {constants});
   const double ratio = mean_of_pixels(around, 0, 1).value / mean_of_pixels(clear, 0, 1).value;
@@ -165,7 +165,7 @@ TANDEM_DEVICE_TEST("Light scattered once is the integral over the ray, by every 
   }
 }
 
-TANDEM_DEVICE_TEST("All techniques light a thick medium with a light inside a box alike") {
+TANDEM_DEVICE_TEST("All techniques light a thick medium around an emitter in a box alike") {
   test::TestScene scene;
   scene.media.push_back({.absorption = {0.3f, 0.1f, 0.0f}, .anisotropy = 0.6f, .scattering = {1.0f, 0.5f, 2.0f}});
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(0.5f)));

@@ -111,13 +111,13 @@ RenderConstants looking_down(const test::TestScene& scene) {
 
 }  // namespace
 
-TANDEM_DEVICE_TEST("All techniques give a diffuse plate between lights the same light") {
+TANDEM_DEVICE_TEST("All techniques give a diffuse plate between lights the same radiance") {
   const test::TestScene scene = plate(test::diffuse({0.8f, 0.5f, 0.3f}));
   compare_techniques(device, 0, scene, looking_down(scene));
 }
 
 TANDEM_DEVICE_TEST(
-    "All techniques give a glossy plate under small and large lights the same light, and weighted they have least "
+    "All techniques give a glossy plate under small and large lights the same radiance, and weighted they have least "
     "noise") {
   pathtracer::GpuMaterial material = test::diffuse({0.1f, 0.2f, 0.3f});
   material.model = MaterialModel::blinn_phong;
@@ -131,7 +131,7 @@ TANDEM_DEVICE_TEST(
   CHECK(errors[0] < 1.1 * errors[1]);
 }
 
-TANDEM_DEVICE_TEST("All techniques give rough glass between lights the same light") {
+TANDEM_DEVICE_TEST("All techniques give rough glass between lights the same radiance") {
   pathtracer::GpuMaterial material = test::glass(1.5f);
   material.model = MaterialModel::rough_dielectric;
   material.roughness = 0.6f;

@@ -120,7 +120,7 @@ TANDEM_DEVICE_TEST("Under a uniform sky a diffuse plane has the radiance of its 
 }
 
 TANDEM_DEVICE_TEST("Glass without absorption disappears under a uniform sky") {
-  // A slab and a tilted block: what is not refracted is reflected, and the eta_scale of radiance inside cancels
+  // A slab and a tilted block: what is not refracted is reflected, and the scaling of radiance inside cancels
   // outside.
   test::TestScene scene;
   const std::uint32_t clear = scene.add_material(test::glass(1.5f));

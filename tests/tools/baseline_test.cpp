@@ -90,7 +90,8 @@ TEST_CASE("the stored run of another job is refused before anything is rendered"
   CHECK(refusal("box.obj", "--background 1,0,0").find("its background is") != std::string::npos);
   const Outcome statistical = diff(folder, "box.obj", "--baseline run --tier statistical");
   CHECK(statistical.exit_code == 2);
-  CHECK(statistical.errors == "tandem: --baseline means nothing in tier statistical, which compares other samples\n");
+  CHECK(statistical.errors ==
+        "tandem: --baseline cannot be combined with --tier statistical: its images have other samples\n");
   // What a file that the scene's file names says, counts too.
   CHECK(diff(folder, "box.obj", "--baseline run").exit_code == 0);
   std::string materials = read_text(folder.path() / "cornell_box.mtl");
@@ -109,17 +110,17 @@ TEST_CASE("a folder without a whole run is no baseline") {
     CHECK(outcome.exit_code == 2);
     return outcome.errors;
   };
-  const std::string start = "tandem: 'run' holds no run of 'tandem diff --out': ";
+  const std::string start = "tandem: 'run' does not hold a run of 'tandem diff --out': ";
   CHECK(refusal("--baseline run") == start + "cannot read 'run/diff.json': it does not exist\n");
   REQUIRE(diff(folder, box, "--out run").exit_code == 0);
   CHECK(refusal("--baseline run --out ./run") ==
-        "tandem: --out and --baseline are both './run': the baseline would be lost\n");
+        "tandem: --out and --baseline are both './run': the baseline would be overwritten\n");
   std::filesystem::remove(folder.path() / "run/b.exr");
   CHECK(refusal("--baseline run").find(start) == 0);
   write_text(folder.path() / "run/diff.json", "{}");
   CHECK(refusal("--baseline run").find(start + "diff.json: ") == 0);
   write_text(folder.path() / "run/diff.json", R"({"settings": 3, "device_a": {}, "device_b": {}})");
-  CHECK(refusal("--baseline run") == start + "'settings' of diff.json is no object\n");
+  CHECK(refusal("--baseline run") == start + "'settings' of diff.json is not an object\n");
 }
 
 }  // namespace

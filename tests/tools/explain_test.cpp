@@ -119,9 +119,9 @@ TEST_CASE("explain refuses what is not there in one sentence") {
       {"--pixel 3", "--pixel: '3' is not a pixel such as 200,310"},
       {"--pixel 3,-1", "--pixel: '3,-1' is not a pixel"},
       {"--pixel 1,2,3", "--pixel: '1,2,3' is not a pixel"},
-      {"--pixel 16,0 --size 16x16", "--pixel 16,0 is outside the picture, which has 16x16 pixels"},
-      {"--pixel 0,600", "--pixel 0,600 is outside the picture, which has 512x512 pixels"},
-      {"--pixel 0,0 --spp 4 --sample 4", "--sample 4 is not there: the pixel has samples 0 to 3"},
+      {"--pixel 16,0 --size 16x16", "--pixel 16,0 is outside the image of 16x16 pixels"},
+      {"--pixel 0,600", "--pixel 0,600 is outside the image of 512x512 pixels"},
+      {"--pixel 0,0 --spp 4 --sample 4", "--sample 4 does not exist: the pixel has samples 0 to 3"},
       {"--pixel 0,0 --arbiter nobody", "nobody"},
       {"--pixel 0,0 --json missing/path.json", "missing"}};
   for (const Bad& bad : all) {

@@ -41,10 +41,10 @@ TEST_CASE("matrix compares each two devices, and lets all vote") {
 TEST_CASE("matrix takes three devices or more, and no tier that has other samples") {
   const Outcome two = run_tandem(words("matrix {} --device cpu cpu-exact", {box}));
   CHECK(two.exit_code == 2);
-  CHECK(two.errors == "tandem: --device: a vote takes at least three devices; 'tandem diff' compares two\n");
+  CHECK(two.errors == "tandem: --device: a vote needs at least three devices; 'tandem diff' compares two\n");
   const Outcome statistical = run_tandem(words("matrix {} --tier statistical --device cpu cpu cpu", {box}));
   CHECK(statistical.exit_code == 2);
-  CHECK(statistical.errors.find("the tier statistical takes 'tandem diff'") != std::string::npos);
+  CHECK(statistical.errors.find("tier statistical is for 'tandem diff' only") != std::string::npos);
 }
 
 TEST_CASE("matrix of pictures that are not finite is exit code 1, and nobody is outvoted by his own bits") {

@@ -68,7 +68,7 @@ TEST_CASE("a suite compares every scene on every pair of devices under every set
                                      {"--json", "x.json", "--junit", "x.xml"});
   CHECK(outcome.errors == "");
   CHECK(outcome.exit_code == 0);
-  CHECK(contains(outcome.output, "8 comparisons: 8 agree, 0 differ, 0 failed; 0 were taken over"));
+  CHECK(contains(outcome.output, "8 comparisons: 8 agree, 0 differ, 0 failed; 0 were reused"));
 
   const Json json = read_json(folder.path() / "x.json");
   CHECK(json == read_json(folder.path() / "out/suite.json"));
@@ -115,7 +115,7 @@ TEST_CASE("what has been compared is taken over until anything that it depends o
   const auto taken_over = [&](const Json& wanted, const std::vector<std::string>& more = {}) {
     const Outcome outcome = folder.run(wanted, more);
     CHECK(outcome.exit_code == 0);
-    const std::size_t end = outcome.output.find(" were taken over");
+    const std::size_t end = outcome.output.find(" were reused");
     REQUIRE(end != std::string::npos);
     return std::stoi(outcome.output.substr(outcome.output.rfind(' ', end - 1) + 1));
   };
@@ -158,13 +158,12 @@ TEST_CASE("an interrupted suite goes on where it was") {
                 {"settings", {tiny}}};
   const Outcome interrupted = folder.run(suite, {}, 5000);
   CHECK(interrupted.exit_code == 130);
-  CHECK(interrupted.errors ==
-        "tandem: interrupted; 1 of 2 comparisons are done, and the same command goes on from there\n");
+  CHECK(interrupted.errors == "tandem: interrupted after 1 of 2 comparisons; the same command continues from there\n");
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out/cells/other-cpu-cpu-tiny.json"));
   suite["scenes"][1]["settings"]["spp"] = 1;
   const Outcome finished = folder.run(suite);
   CHECK(finished.exit_code == 0);
-  CHECK(contains(finished.output, "2 comparisons: 2 agree, 0 differ, 0 failed; 1 were taken over"));
+  CHECK(contains(finished.output, "2 comparisons: 2 agree, 0 differ, 0 failed; 1 were reused"));
 }
 
 TEST_CASE("a comparison that fails and one that differs are results, worst first, and exit code 1") {
@@ -200,7 +199,7 @@ TEST_CASE("a comparison that fails and one that differs are results, worst first
   CHECK(contains(failure.node().text().get(), "with a NaN or an infinity"));
 
   // What failed is tried again, what was compared is not.
-  CHECK(contains(folder.run(suite).output, "4 failed; 4 were taken over"));
+  CHECK(contains(folder.run(suite).output, "4 failed; 4 were reused"));
 
   Json only_good = suite;
   only_good["devices"] = on_the_cpu;
@@ -224,7 +223,7 @@ TEST_CASE("errors in a suite name the place") {
   for (const char* unknown : {"colour", "threads", "help", "min-bit-equal", "a", "out"}) {
     CAPTURE(unknown);
     CHECK(folder.error(with({{unknown, "1"}})) ==
-          "settings[0]." + std::string(unknown) + " is no option of 'tandem diff' that a suite can set\n");
+          "settings[0]." + std::string(unknown) + " is not an option of 'tandem diff' that a suite can set\n");
   }
   CHECK(folder.error(with({{"spp", nullptr}})) ==
         "settings[0].spp must be a text, a number, a list of numbers, true or false\n");
@@ -242,7 +241,7 @@ TEST_CASE("errors in a suite name the place") {
 }
 
 TEST_CASE("the suite that ships has every scene of the gallery, and the schema takes it") {
-  const JsonSchema schema(read_json(TANDEM_SOURCE_DIRECTORY "/docs/suite.schema.json"));
+  const JsonSchema schema(read_json(TANDEM_SOURCE_DIRECTORY "/docs/schema/suite.schema.json"));
   const Json suite = read_json(scenes + "suite.json");
   CHECK(schema.accepts(suite));
   std::set<std::string> files;

@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "pathtracer/render/renderer.hpp"
 #include "tools/command.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
-#include "tools/rendering.hpp"
+#include "tools/output/progress_bar.hpp"
 #include "tools/report/bench_report.hpp"
 #include "tools/report/device_json.hpp"
 
@@ -25,18 +27,18 @@ struct Options {
 
 int measure_speed(const Options& options) {
   if (!options.json.empty()) check_output_path(options.json);
-  const RenderJob job = load_job(options.render);
-  BenchReport report{.job = summary(options.render, job), .threads = options.render.threads, .series = {}};
+  const compare::Job job = load_job(options.render);
+  BenchReport report{.job = summary(job), .threads = options.render.threads, .series = {}};
   std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
   for (const std::string& name : options.devices) {
     const rhi::DeviceHandle device = open_device(name, options.render);
     renderers.push_back(std::make_unique<pathtracer::Renderer>(device, job.scene, job.settings, options.render.trace));
     report.series.push_back({.device = device->info(),
-                             .trace = renderers.back()->trace(),
-                             .build_milliseconds = renderers.back()->build_milliseconds(),
+                             .trace = renderers.back()->scene().trace(),
+                             .build_milliseconds = renderers.back()->scene().build_milliseconds(),
                              .milliseconds = {}});
   }
-  print_warnings(renderers.front()->warnings());
+  print_warnings(renderers.front()->scene().warnings());
 
   // Round 0 warms up: first compilation, page faults, clock speeds. The devices take turns within a round, so that a
   // machine that becomes slower or faster does so for all of them.
@@ -45,8 +47,8 @@ int measure_speed(const Options& options) {
       pathtracer::Renderer& renderer = *renderers[index];
       BenchSeries& series = report.series[index];
       renderer.restart(job.settings);
-      render_samples(renderer, job.samples,
-                     fmt::format("round {} of {}, {}", round, options.rounds, series.device.name));
+      const std::string label = fmt::format("round {} of {}, {}", round, options.rounds, series.device.name);
+      if (!renderer.render(job.samples, progress_bar(label))) throw Cancelled();
       series.rays = renderer.ray_count();
       if (round > 0) series.milliseconds.push_back(renderer.device_milliseconds());
     }
@@ -63,18 +65,19 @@ int measure_speed(const Options& options) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, Action& action) {
-  CLI::App* const command = app.add_subcommand("bench", "Measure how fast devices render a scene, taking turns");
+  CLI::App* const command = app.add_subcommand("bench", "Measure how fast devices render a scene, in alternating runs");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("--device", options->devices, "A device to measure; give it once for each, the first is the unit")
+  command
+      ->add_option("--device", options->devices,
+                   "Device to measure; repeat the option for each device. The first is the reference of the ratios")
       ->required()
       ->allow_extra_args(false)
       ->type_name("D");
-  add_whole_number(*command, "--repeat", options->rounds, 1, 10'000, "Rounds that count, after one to warm up");
-  command->add_option("--json", options->json, "Write all numbers, round by round, as JSON")->type_name("FILE");
+  add_whole_number(*command, "--repeat", options->rounds, 1, 10'000, "Measured rounds, after one warm-up round");
+  command->add_option("--json", options->json, "Write all measurements, round by round, as JSON")->type_name("FILE");
   command->footer(
-      "Times are those of the device (its timestamps where it has them) in milliseconds, without loading and "
-      "building.\n"
+      "Times are milliseconds on the device (by its timestamps where it has them), without loading and building.\n"
       "Example:\n"
       "  tandem bench scenes/cornell_box.obj --device vulkan --device cpu --repeat 9 --json bench.json");
   command->callback([&action, options] { action = [options] { return measure_speed(*options); }; });

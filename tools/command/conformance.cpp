@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "conformance/kit/report.hpp"
 #include "devices/devices.hpp"
 #include "tools/command.hpp"
@@ -76,7 +77,7 @@ conformance::DeviceReport run_on(const std::string& name, const std::vector<conf
   if (options.full) run_options.settings.watertightness_rays = full_watertightness_rays;
   if (options.validation) run_options.take_messages = [messages] { return messages->take(); };
   run_options.on_result = [](const conformance::Result&) {
-    if (interrupted()) throw Interrupted();
+    if (interrupted()) throw Cancelled();
   };
   return conformance::run(*device, cases, run_options);
 }
@@ -120,29 +121,26 @@ int run_kit(const Options& options) {
 
 void add_conformance_command(CLI::App& app, Action& action) {
   CLI::App* const command =
-      app.add_subcommand("conformance", "Check every ray tracing behaviour of a device, one case each");
+      app.add_subcommand("conformance", "Check the ray tracing behaviour of a device, one case per behaviour");
   const auto options = std::make_shared<Options>();
-  command->add_option("--device", options->devices, "A device to check, repeatable; all that there are by default")
-      ->type_name("D");
+  command->add_option("--device", options->devices, "Device to check, repeatable [all devices]")->type_name("D");
   command
       ->add_option("--require-devices", options->required,
-                   "Comma-separated devices that must have been checked; 'vulkan' is any Vulkan device")
+                   "Comma-separated devices without which the run fails; 'vulkan' is any Vulkan device")
       ->type_name("D,D")
       ->delimiter(',');
-  command->add_option("--filter", options->filter, "Only cases whose name matches, such as 'ray_query.*'")
+  command->add_option("--filter", options->filter, "Run only cases whose name matches, such as 'ray_query.*'")
       ->type_name("GLOB")
       ->capture_default_str();
-  command->add_flag("--list", options->list, "Print the cases and what each is about, and check nothing");
-  command->add_flag("--full", options->full,
-                    "Ten million rays at edges and vertices of closed meshes, not half a million");
+  command->add_flag("--list", options->list, "List the cases with a description of each and exit");
+  command->add_flag("--full", options->full, "Test watertightness with ten million rays in place of half a million");
   command->add_flag("--validation", options->validation,
-                    "Vulkan: a case fails when the Khronos validation layer complains");
+                    "Vulkan: fail a case when the Khronos validation layer reports an error");
   command->add_option("--json", options->json, "Write all results as JSON")->type_name("FILE");
-  command->add_option("--markdown", options->markdown, "Write a report like docs/results/backend-status.md")
+  command->add_option("--markdown", options->markdown, "Write the report as Markdown (docs/results/backend-status.md)")
       ->type_name("FILE");
   command->footer(
-      "Exit code: 0 every case passed, is unsupported or fails by a known bug of the driver; 1 a case failed, a "
-      "required\n"
+      "Exit code: 0 every case passed, is unsupported or fails by a known driver bug; 1 a case failed, a required\n"
       "device is absent or no case passed on a device; 2 error.\n"
       "Examples:\n"
       "  tandem conformance --device vulkan\n"

@@ -54,7 +54,7 @@ void add_devices_command(CLI::App& app, Action& action) {
   CLI::App* const command = app.add_subcommand("devices", "List the devices that can render");
   const auto as_json = std::make_shared<bool>(false);
   command->add_flag("--json", *as_json, "Print JSON, with all capabilities and limits");
-  command->footer("The names are what --device, --a and --b take; 'vulkan' alone is the first Vulkan device.");
+  command->footer("--device, --a and --b take these names; 'vulkan' without a number is the first Vulkan device.");
   command->callback([&action, as_json] { action = [as_json] { return list_devices(*as_json); }; });
 }
 

@@ -6,26 +6,38 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "base/error.hpp"
 #include "compare/cause/class_map.hpp"
 #include "compare/image/difference.hpp"
 #include "compare/image/flip/flip.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "tools/command.hpp"
-#include "tools/comparison.hpp"
+#include "tools/options/comparison_options.hpp"
+#include "tools/options/job.hpp"
 #include "tools/output/junit.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/progress_bar.hpp"
+#include "tools/report/baseline.hpp"
+#include "tools/report/baseline_report.hpp"
+#include "tools/report/comparison_report.hpp"
 #include "tools/report/device_json.hpp"
-#include "tools/report/diff_report.hpp"
 #include "tools/report/report_page.hpp"
 
 namespace tandem::tools {
 namespace {
 
+/// All that `tandem diff` found out.
+struct Findings {
+  compare::Comparison comparison;
+  std::optional<Baseline> baseline;  ///< where a stored run was given
+};
+
 struct Options {
   RenderOptions render;
-  ComparisonOptions comparison;
+  ComparisonArguments comparison;
   std::filesystem::path json;      ///< empty: none
   std::filesystem::path junit;     ///< empty: none
   std::filesystem::path folder;    ///< empty: no images
@@ -38,24 +50,48 @@ bool is_same_file(const std::filesystem::path& first, const std::filesystem::pat
   return std::filesystem::weakly_canonical(first) == std::filesystem::weakly_canonical(second);
 }
 
-JunitCase junit_case(const DiffReport& report) {
-  return {.group = report.job.scene,
-          .name = fmt::format("{} against {}", report.a.device.name, report.b.device.name),
-          .seconds = (report.a.milliseconds + report.b.milliseconds) / 1000,
-          .failures = failures(report),
+/// A sentence for each thing that is not as it must be, those of the verdict first. None: the exit code is 0.
+std::vector<std::string> failures(const Findings& findings) {
+  std::vector<std::string> sentences = findings.comparison.verdict.reasons;
+  if (findings.baseline) {
+    const auto add = [&](char side, const compare::Verdict& verdict) {
+      for (const std::string& reason : verdict.reasons)
+        sentences.push_back(fmt::format("Since '{}', {} has changed: {}", findings.baseline->folder, side, reason));
+    };
+    add('a', findings.baseline->a.verdict);
+    add('b', findings.baseline->b.verdict);
+  }
+  return sentences;
+}
+
+std::string json_of(const Findings& findings) {
+  nlohmann::ordered_json json = to_json(findings.comparison);
+  if (findings.baseline) json["baseline"] = to_json(*findings.baseline);
+  return json_text(json);
+}
+
+JunitCase junit_case(const Findings& findings) {
+  const compare::Rendering& a = findings.comparison.a;
+  const compare::Rendering& b = findings.comparison.b;
+  return {.group = findings.comparison.job.scene,
+          .name = fmt::format("{} against {}", a.device.name, b.device.name),
+          .seconds = (a.milliseconds + b.milliseconds) / 1000,
+          .failures = failures(findings),
           .error = {}};
 }
 
-/// What is written once the report and the page are complete; it refers to both.
-std::vector<OutputFile> output_files(const Options& options, const DiffReport& report, const std::string& page) {
+/// What is to be written once the findings and the page are complete. It refers to both, so that files can be checked
+/// before anything is rendered.
+std::vector<OutputFile> output_files(const Options& options, const Findings& findings, const std::string& page) {
+  const compare::Comparison& comparison = findings.comparison;
   std::vector<OutputFile> files;
   const auto add_text = [&](const std::filesystem::path& path, const auto& text) {
     files.push_back({path, [text](const std::filesystem::path& name) { write_text(name, text()); }});
   };
-  const auto json = [&report] { return json_text(to_json(report)); };
+  const auto json = [&findings] { return json_of(findings); };
   if (!options.json.empty()) add_text(options.json, json);
   if (!options.junit.empty()) {
-    add_text(options.junit, [&report] { return junit_xml("tandem diff", std::vector{junit_case(report)}); });
+    add_text(options.junit, [&findings] { return junit_xml("tandem diff", std::vector{junit_case(findings)}); });
   }
   if (!options.report.empty()) {
     add_text(options.report / "index.html", [&page] { return page; });
@@ -66,29 +102,34 @@ std::vector<OutputFile> output_files(const Options& options, const DiffReport& r
                        pathtracer::write_image(path, image(), metadata(), tone);
                      }});
   };
-  const auto add_rendering = [&](const char* name, const Rendering& rendering) {
+  const auto add_rendering = [&](const char* name, const compare::Rendering& rendering) {
     add(
         name, [&rendering] { return rendering.image; }, [&rendering] { return rendering.metadata; }, options.tone);
   };
-  const auto metadata = [&report] {
-    pathtracer::ImageMetadata both = report.a.metadata;
-    if (report.a.trace != report.b.trace) both.erase("trace");
-    both["device"] = report.a.device.name + " minus " + report.b.device.name;
+  const auto metadata = [&comparison] {
+    pathtracer::ImageMetadata both = comparison.a.metadata;
+    if (comparison.a.trace != comparison.b.trace) both.erase("trace");
+    both["device"] = comparison.a.device.name + " minus " + comparison.b.device.name;
     return both;
   };
   const std::filesystem::path stored = options.folder / stored_report;
   if (options.json.empty() || !is_same_file(options.json, stored)) add_text(stored, json);
-  add_rendering("a.exr", report.a);
-  add_rendering("a.png", report.a);
-  add_rendering("b.exr", report.b);
-  add_rendering("b.png", report.b);
-  add("difference.exr", [&report] { return compare::signed_difference(report.a.image, report.b.image); }, metadata, {});
-  if (options.comparison.classify)
-    add("classes.png", [&report] { return compare::class_map(*report.classification, report.a.image, report.b.image); },
+  add_rendering("a.exr", comparison.a);
+  add_rendering("a.png", comparison.a);
+  add_rendering("b.exr", comparison.b);
+  add_rendering("b.png", comparison.b);
+  add("difference.exr", [&comparison] { return compare::signed_difference(comparison.a.image, comparison.b.image); },
+      metadata, {});
+  if (options.comparison.comparison.classify)
+    add("classes.png",
+        [&comparison] {
+          return compare::class_map(*comparison.classification, comparison.a.image, comparison.b.image);
+        },
         metadata, {});
-  add("difference.png", [&report] { return compare::heat_map(report.a.image, report.b.image); }, metadata, {});
-  if (options.comparison.metrics == compare::MetricSet::all) {
-    add("flip.png", [&report] { return compare::error_map(*report.detailed_metrics->flip); }, metadata, {});
+  add("difference.png", [&comparison] { return compare::heat_map(comparison.a.image, comparison.b.image); }, metadata,
+      {});
+  if (options.comparison.comparison.metrics == compare::MetricSet::all) {
+    add("flip.png", [&comparison] { return compare::error_map(*comparison.detailed_metrics->flip); }, metadata, {});
   }
   return files;
 }
@@ -97,36 +138,36 @@ int diff(const Options& options) {
   std::optional<StoredRun> baseline;
   if (!options.baseline.empty()) {
     if (!options.folder.empty() && is_same_file(options.folder, options.baseline))
-      throw Error(
-          fmt::format("--out and --baseline are both '{}': the baseline would be lost", options.folder.string()));
+      throw Error(fmt::format("--out and --baseline are both '{}': the baseline would be overwritten",
+                              options.folder.string()));
     baseline = read_stored_run(options.baseline);
   }
-  RenderJob job = load_job(options.render);
-  const ComparisonOptions comparison_options =
-      options.report.empty() ? options.comparison : with_metrics_for_page(options.comparison);
-  Comparison comparison =
-      prepare(comparison_options, options.render, std::move(job), open_devices(comparison_options, options.render));
+  compare::Job job = load_job(options.render);
+  compare::ComparisonOptions wanted = comparison_options(options.comparison, options.render);
+  if (!options.report.empty()) wanted = with_metrics_for_page(wanted);
+  compare::Session session = prepare(open_devices(options.comparison, options.render), std::move(job), wanted);
   if (baseline) {
-    if (comparison.thresholds.tier == compare::Tier::statistical)
-      throw Error("--baseline means nothing in tier statistical, which compares other samples");
-    check_same_job(*baseline, comparison.summary, comparison.a.camera(), comparison.a.background());
+    if (wanted.thresholds.tier == compare::Tier::statistical)
+      throw Error("--baseline cannot be combined with --tier statistical: its images have other samples");
+    check_same_job(*baseline, session.summary, session.a.scene().camera(), session.a.scene().background());
   }
-  DiffReport report;
+  Findings findings;
   std::string page;
-  const std::vector<OutputFile> files = output_files(options, report, page);
+  const std::vector<OutputFile> files = output_files(options, findings, page);
   const auto output_folder = [](const std::filesystem::path& path) {
     return path.empty() ? std::nullopt : std::make_optional<OutputFolder>(path);
   };
   const std::optional<OutputFolder> folder = output_folder(options.folder);
   const std::optional<OutputFolder> page_folder = output_folder(options.report);
   check_output_files(files);
-  report = compare_devices(comparison);
-  if (baseline) report.baseline = compare_with(*baseline, report);
-  print_warnings(report.a.warnings);
-  fmt::print("{}", table(report));
-  if (!options.report.empty()) page = report_page(comparison, report);
+  findings.comparison = compare_devices(session, progress_bars());
+  if (baseline) findings.baseline = compare_with(*baseline, findings.comparison);
+  print_warnings(findings.comparison.a.warnings);
+  fmt::print("{}", table(findings.comparison));
+  if (findings.baseline) fmt::print("\n{}", table(*findings.baseline));
+  if (!options.report.empty()) page = report_page(session, findings.comparison, json_of(findings));
   write_or_rescue(files);
-  return failures(report).empty() ? exit_code::success : exit_code::differ;
+  return failures(findings).empty() ? exit_code::success : exit_code::differ;
 }
 
 }  // namespace
@@ -143,19 +184,20 @@ void add_diff_command(CLI::App& app, Action& action) {
   command->add_option("--json", options->json, "Write all numbers and the verdict as JSON")->type_name("FILE");
   command->add_option("--junit", options->junit, "Write the verdict as JUnit XML, for CI")->type_name("FILE");
   command
-      ->add_option("--out", options->folder,
-                   "Write a, b and their difference as .exr and .png, FLIP where measured, and diff.json, into this "
-                   "folder, made if it is "
-                   "missing")
+      ->add_option(
+          "--out", options->folder,
+          "Write both images and their difference as .exr and .png, diff.json and, where measured, flip.png into "
+          "this folder, which is created if missing")
       ->type_name("DIR");
   command
-      ->add_option("--report", options->report,
-                   "Write a page with images, numbers and paths, index.html, into this folder, made if it is missing; "
-                   "measures --metrics all unless told otherwise")
+      ->add_option(
+          "--report", options->report,
+          "Write index.html, a page with images, numbers and paths, into this folder, which is created if missing; "
+          "implies --metrics all unless --metrics is given")
       ->type_name("DIR");
   command
       ->add_option("--baseline", options->baseline,
-                   "Compare with the run of the same scene and settings that --out stored in this folder")
+                   "Compare also with an earlier run of the same scene and settings, stored in this folder by --out")
       ->type_name("DIR");
   add_comparison_options(*command, options->comparison);
   add_tone_options(*command, options->tone);

@@ -4,10 +4,13 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/error.hpp"
+#include "compare/session/explanation.hpp"
 #include "tools/command.hpp"
-#include "tools/explanation.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/options/render_options.hpp"
+#include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/explanation_report.hpp"
@@ -17,14 +20,37 @@ namespace {
 
 struct Options {
   RenderOptions render;
-  ExplanationOptions explanation;
+  std::string a = "cpu";              ///< the first device, the reference
+  std::string b = "vulkan";           ///< the second
+  std::string arbiter = "cpu-exact";  ///< says which of two answers to a ray is right
+  compare::ExplanationOptions explanation;
   bool all_events = false;
   std::filesystem::path json;  ///< empty: none
 };
 
+/// As explain would, but naming the options, and before devices are opened.
+void check(const Options& options, const compare::Job& job) {
+  const compare::ExplanationOptions& wanted = options.explanation;
+  if (wanted.pixel.x >= job.settings.width || wanted.pixel.y >= job.settings.height)
+    throw Error(fmt::format("--pixel {},{} is outside the image of {}x{} pixels", wanted.pixel.x, wanted.pixel.y,
+                            job.settings.width, job.settings.height));
+  if (wanted.sample && *wanted.sample >= job.samples)
+    throw Error(fmt::format("--sample {} does not exist: the pixel has samples 0 to {} (--spp {})", *wanted.sample,
+                            job.samples - 1, job.samples));
+}
+
 int run(const Options& options) {
   if (!options.json.empty()) check_output_path(options.json);
-  const Explanation explanation = explain(options.explanation, options.render);
+  const compare::Job job = load_job(options.render);
+  check(options, job);
+  compare::ExplanationOptions explanation_options = options.explanation;
+  if (!explanation_options.trace_a) explanation_options.trace_a = options.render.trace;
+  if (!explanation_options.trace_b) explanation_options.trace_b = options.render.trace;
+  const compare::ComparedDevices devices{.a = open_device(options.a, options.render),
+                                         .b = open_device(options.b, options.render),
+                                         .arbiter = open_device(options.arbiter, options.render)};
+  const compare::Explanation explanation = explain(devices, job, explanation_options);
+  print_warnings(explanation.warnings);
   fmt::print("{}", table(explanation, {.all_events = options.all_events, .colors = isatty(STDOUT_FILENO) != 0}));
   if (!options.json.empty()) write_text(options.json, json_text(to_json(explanation)));
   return explanation.mismatches() == 0 ? exit_code::success : exit_code::differ;
@@ -34,27 +60,25 @@ int run(const Options& options) {
 
 void add_explain_command(CLI::App& app, Action& action) {
   CLI::App* const command =
-      app.add_subcommand("explain", "Say where the paths of one pixel part on two devices, and why");
+      app.add_subcommand("explain", "Show where the paths of one pixel diverge between two devices, and why");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  ExplanationOptions& explanation = options->explanation;
-  add_pixel(*command, "--pixel", explanation.pixel, "The pixel, from 0,0 in the upper left corner on")->required();
+  compare::ExplanationOptions& explanation = options->explanation;
+  add_pixel(*command, "--pixel", explanation.pixel, "The pixel; 0,0 is the upper left corner")->required();
   add_whole_number(*command, "--sample", explanation.sample, 0, 0xffffffffU,
-                   "One of its samples [all are compared, and the first that differs is shown]");
-  command->add_option("--a", explanation.a, "The first device, the reference")->type_name("D1")->capture_default_str();
-  command->add_option("--b", explanation.b, "The second device")->type_name("D2")->capture_default_str();
-  command->add_option("--arbiter", explanation.arbiter, "The device that says which answer to a ray is right")
+                   "Compare and show only this sample [compare all, show the first that differs]");
+  command->add_option("--a", options->a, "The first device, the reference")->type_name("D1")->capture_default_str();
+  command->add_option("--b", options->b, "The second device")->type_name("D2")->capture_default_str();
+  command->add_option("--arbiter", options->arbiter, "Device that decides which of two ray hits is right")
       ->type_name("D3")
       ->capture_default_str();
   add_tracing_mode(*command, "--trace-a", explanation.trace_a, "As --trace, for the first device only");
   add_tracing_mode(*command, "--trace-b", explanation.trace_b, "As --trace, for the second device only");
-  command->add_flag("--all-events", options->all_events,
-                    "Show every event with every field, not only those where the paths part");
+  command->add_flag("--all-events", options->all_events, "Show every field of every event, not only those that differ");
   command->add_flag_function(
       "--probe,!--no-probe", [options](std::int64_t count) { options->explanation.probe = count > 0; },
-      "Ask both devices the rays of the path in other ways too (masks, culling, instances, ...) [if the paths are the "
-      "same]");
-  command->add_option("--json", options->json, "Write all of it as JSON")->type_name("FILE");
+      "Also trace the rays of the path under masks, culling, transformed instances, ... [if the paths are equal]");
+  command->add_option("--json", options->json, "Write all events and classes as JSON")->type_name("FILE");
   command->footer(
       "Exit code: 0 nothing but rounding and ties, 1 a mismatch: one of the devices is wrong, 2 error.\n"
       "Examples:\n"

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "base/progress.hpp"
 #include "pathtracer/load/generate.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
@@ -27,7 +28,7 @@ int generate(const Options& options) {
       return !interrupted();
     });
   }
-  if (triangles == 0) throw Interrupted();
+  if (triangles == 0) throw Cancelled();
   fmt::print("{}: {} triangles\n", options.output.string(), triangles);
   return exit_code::success;
 }
@@ -39,7 +40,7 @@ void add_generate_command(CLI::App& app, Action& action) {
       app.add_subcommand("generate", "Write a scene of any size: the Cornell box filled with displaced spheres");
   const auto options = std::make_shared<Options>();
   add_whole_number(*command, "--triangles", options->triangles, pathtracer::minimum_generated_triangles,
-                   pathtracer::maximum_generated_triangles, "About how many triangles");
+                   pathtracer::maximum_generated_triangles, "Approximate number of triangles");
   command->add_option("-o,--output", options->output, "Wavefront OBJ file; its MTL file is written beside it")
       ->required()
       ->type_name("FILE.obj");

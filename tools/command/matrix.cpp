@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "compare/session/rendering.hpp"
 #include "tools/command.hpp"
-#include "tools/comparison.hpp"
+#include "tools/options/job.hpp"
+#include "tools/options/threshold_options.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
-#include "tools/rendering.hpp"
+#include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/matrix_report.hpp"
 
@@ -19,18 +21,19 @@ namespace {
 
 struct Options {
   RenderOptions render;
-  ComparisonOptions comparison;  ///< its thresholds
+  ThresholdOptions thresholds;
   std::vector<std::string> devices;
   std::filesystem::path json;  ///< empty: none
 };
 
 int compare_matrix(const Options& options) {
   if (options.devices.size() < 3)
-    throw Error("--device: a vote takes at least three devices; 'tandem diff' compares two");
-  const RenderJob job = load_job(options.render);
-  const compare::Thresholds thresholds = thresholds_for(options.comparison, options.render);
+    throw Error("--device: a vote needs at least three devices; 'tandem diff' compares two");
+  const compare::Job job = load_job(options.render);
+  compare::Thresholds thresholds = compare::thresholds_of(options.render.scene, {});
+  apply(options.thresholds, thresholds);
   if (thresholds.tier == compare::Tier::statistical)
-    throw Error(fmt::format("{}: the tier statistical takes 'tandem diff', since a matrix is of the same samples",
+    throw Error(fmt::format("{}: tier statistical is for 'tandem diff' only; a matrix compares equal samples",
                             options.render.scene.string()));
   if (!options.json.empty()) check_output_path(options.json);
   std::vector<rhi::DeviceHandle> devices;
@@ -41,11 +44,11 @@ int compare_matrix(const Options& options) {
     renderers.push_back(
         std::make_unique<pathtracer::Renderer>(devices.back(), job.scene, job.settings, options.render.trace));
   }
-  std::vector<Rendering> renderings;
+  std::vector<compare::Rendering> renderings;
   for (std::size_t index = 0; index < devices.size(); ++index)
-    renderings.push_back(render(*renderers[index], devices[index]->info(), job.samples));
+    renderings.push_back(compare::render(*renderers[index], job.samples, progress_bars()));
   print_warnings(renderings.front().warnings);
-  const MatrixReport report = compare_all(summary(options.render, job), thresholds, std::move(renderings));
+  const MatrixReport report = compare_all(summary(job), thresholds, std::move(renderings));
   fmt::print("{}", table(report));
   if (!options.json.empty()) {
     const OutputFile file{options.json,
@@ -58,19 +61,20 @@ int compare_matrix(const Options& options) {
 }  // namespace
 
 void add_matrix_command(CLI::App& app, Action& action) {
-  CLI::App* const command = app.add_subcommand(
-      "matrix", "Render a scene on three or more devices, compare each two of them, and let them vote");
+  CLI::App* const command =
+      app.add_subcommand("matrix", "Compare three or more devices in pairs, and by majority vote on each pixel");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("--device", options->devices, "The devices, three or more, after the scene")
+  command->add_option("--device", options->devices, "Three or more devices, given after the scene")
       ->required()
       ->type_name("A B C...");
   command->add_option("--json", options->json, "Write all numbers as JSON")->type_name("FILE");
-  add_threshold_options(*command, options->comparison.thresholds);
+  add_threshold_options(*command, options->thresholds);
   command->footer(
-      "A device is outvoted at a pixel where more than half of all have the same bits, or at least values within 1e-3\n"
-      "relative, and it has not.\n"
-      "Exit code: 0 every pair agrees, 1 one differs, 2 error.\n"
+      "A device is outvoted at a pixel where more than half of all devices agree, by bits or else within 1e-3 "
+      "relative,\n"
+      "and it does not agree with them.\n"
+      "Exit code: 0 every pair agrees, 1 a pair differs, 2 error.\n"
       "Example:\n"
       "  tandem matrix scenes/cornell_box.obj --size 64x64 --device cpu cpu-exact vulkan");
   command->callback([&action, options] { action = [options] { return compare_matrix(*options); }; });

@@ -6,12 +6,16 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "compare/session/rendering.hpp"
 #include "pathtracer/image/image_io.hpp"
+#include "pathtracer/render/first_hits.hpp"
 #include "tools/command.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/render_options.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
-#include "tools/rendering.hpp"
+#include "tools/output/progress_bar.hpp"
+#include "tools/report/speed.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -27,14 +31,14 @@ struct Options {
 int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
   if (options.layers && options.output.extension() != ".exr")
-    throw Error(fmt::format("--layers: '{}' is no .exr, which alone has layers", options.output.string()));
-  const RenderJob job = load_job(options.render);
+    throw Error(fmt::format("--aovs: '{}' is not an .exr; only .exr files hold AOVs", options.output.string()));
+  const compare::Job job = load_job(options.render);
   const rhi::DeviceHandle device = open_device(options.device, options.render);
   pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
-  const Rendering rendering = render(renderer, device->info(), job.samples);
+  const compare::Rendering rendering = compare::render(renderer, job.samples, progress_bars());
   print_warnings(rendering.warnings);
   std::vector<pathtracer::ImageChannel> layers;
-  if (options.layers) layers = renderer.first_hits(job.samples);
+  if (options.layers) layers = pathtracer::first_hits(renderer.scene(), job.samples);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {
                           pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone, layers);
                         }};
@@ -52,14 +56,13 @@ void add_render_command(CLI::App& app, Action& action) {
   CLI::App* const command = app.add_subcommand("render", "Render a scene on one device into an image file");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("-o,--output", options->output, "Image: .exr (linear, 32-bit float) or .png (8 bits)")
+  command->add_option("-o,--output", options->output, "Image file: .exr (linear, 32-bit float) or .png (8 bits)")
       ->required()
       ->type_name("FILE");
-  command->add_flag(
-      "--layers", options->layers,
-      "Add to the .exr what pixels show first: albedo, normal, depth, coverage, ids of primitive and material");
+  command->add_flag("--aovs,--layers", options->layers,
+                    "Add first-hit AOVs to the .exr: albedo, normal, depth, coverage, primitive and material ids");
   add_tone_options(*command, options->tone);
-  command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
+  command->add_option("--device", options->device, "Device to render on, as listed by 'tandem devices'")
       ->type_name("D")
       ->capture_default_str();
   command->footer(

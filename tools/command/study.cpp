@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "compare/study/sampling_study.hpp"
 #include "compare/study/study_scenes.hpp"
 #include "tools/command.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/progress_bar.hpp"
-#include "tools/rendering.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/study_report.hpp"
 
@@ -41,13 +42,10 @@ int study_sampling(const Options& options) {
   };
   for (const Subject& subject : {Subject{study::weekend_box(), true}, Subject{study::veach_plates(), false},
                                  Subject{study::light_over_floor(), false}}) {
-    ProgressBar bar(subject.scene.name);
-    std::optional<study::SceneResult> result = study::study_scene(
-        device, subject.scene, study::methods(), options.settings, subject.compares_thesis, [&](double fraction) {
-          bar.show(fraction);
-          return !interrupted();
-        });
-    if (!result) throw Interrupted();
+    std::optional<study::SceneResult> result =
+        study::study_scene(device, subject.scene, study::methods(), options.settings, subject.compares_thesis,
+                           progress_bar(subject.scene.name));
+    if (!result) throw Cancelled();
     report.scenes.push_back(std::move(*result));
   }
   fmt::print("{}", markdown(report));
@@ -64,26 +62,27 @@ int study_sampling(const Options& options) {
 }  // namespace
 
 void add_study_command(CLI::App& app, Action& action) {
-  CLI::App* const group = app.add_subcommand("study", "Measure what the methods of the path tracer are worth");
+  CLI::App* const group = app.add_subcommand("study", "Measure the efficiency of the path tracer's methods");
   group->require_subcommand(1);
   CLI::App* const command = group->add_subcommand(
-      "sampling", "Error, variance, time and order of convergence of every sampler and option of the integrator");
+      "sampling", "Error, variance, time and order of convergence of every sampler and integrator option");
   const auto options = std::make_shared<Options>();
-  command->add_option("--device", options->device, "Where to render: a name that 'tandem devices' lists")
+  command->add_option("--device", options->device, "Device to render on, as listed by 'tandem devices'")
       ->type_name("D")
       ->capture_default_str();
-  add_whole_number(*command, "--threads", options->threads, 0, 4096, "Threads of the CPU device; 0: all");
-  add_whole_number(*command, "--size", options->settings.size, 1, 4096, "Pixels of the square pictures, each way");
+  add_whole_number(*command, "--threads", options->threads, 0, 4096,
+                   "Worker threads of the CPU devices; 0: one per hardware thread");
+  add_whole_number(*command, "--size", options->settings.size, 1, 4096,
+                   "Width and height of the square images, in pixels");
   add_whole_number(*command, "--reference-spp", options->settings.reference_samples, 1, 1u << 24,
-                   "Samples per pixel of the picture that errors are measured against");
+                   "Samples per pixel of the reference image");
   command->add_option("--json", options->json, "Write all measurements as JSON")->type_name("FILE");
   command->add_option("--markdown", options->markdown, "Write the tables as Markdown")->type_name("FILE");
   command->footer(
       "The scenes are built in: the Cornell box of Ray Tracing in One Weekend's series, Veach's plates, and a light "
       "over\n"
-      "a floor, which is smooth. RMSE is over pixels and channels; the variance is that of one sample; the efficiency "
-      "is\n"
-      "1 / (V T) with the seconds of the device, over that of the first method.\n"
+      "a floor, whose integrand is smooth. RMSE is over pixels and channels, V is the variance of one sample, T the\n"
+      "time on the device in seconds; the efficiency 1 / (V T) is relative to that of the first method.\n"
       "Example:\n"
       "  tandem study sampling --device cpu --markdown sampling.md");
   command->callback([&action, options] { action = [options] { return study_sampling(*options); }; });

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
@@ -35,7 +36,7 @@ void print_line(const SuiteResult& result) {
       result.failed() ? std::string()
                       : fmt::format("{:.4f} % bit-equal  ", 100 * json.at("report").at("bit_equal").get<double>());
   fmt::print("{:<52}{}{}{}\n", json.at("name").get<std::string>(), share, json.at("state").get<std::string>(),
-             result.taken_over ? " (taken over)" : "");
+             result.reused ? " (reused)" : "");
   for (const std::string reason : json.at("reasons")) fmt::print("{:<52}{}\n", "", reason);
   std::fflush(stdout);
 }
@@ -59,19 +60,18 @@ int run_suite(const Options& options) {
   SuiteRun run(options.folder, options.fresh);
   for (const SuiteCell& cell : suite.cells) {
     try {
-      if (interrupted()) throw Interrupted();
+      if (interrupted()) throw Cancelled();
       results.push_back(run.run(cell));
-    } catch (const Interrupted&) {
-      throw Interrupted(
-          fmt::format("interrupted; {} of {} comparisons are done, and the same command goes on from there",
-                      results.size(), suite.cells.size()));
+    } catch (const Cancelled&) {
+      throw Cancelled(fmt::format("interrupted after {} of {} comparisons; the same command continues from there",
+                                  results.size(), suite.cells.size()));
     }
     print_line(results.back());
   }
   const nlohmann::ordered_json totals = to_json(results);
-  const auto taken_over = std::ranges::count_if(results, [](const SuiteResult& each) { return each.taken_over; });
-  fmt::print("{} comparisons: {} agree, {} differ, {} failed; {} were taken over from an earlier run\n", results.size(),
-             totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>(), taken_over);
+  const auto reused = std::ranges::count_if(results, [](const SuiteResult& each) { return each.reused; });
+  fmt::print("{} comparisons: {} agree, {} differ, {} failed; {} were reused from an earlier run\n", results.size(),
+             totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
   write_or_rescue(files);
   return totals.at("verdict") == "agree" ? exit_code::success : exit_code::differ;
 }
@@ -80,26 +80,27 @@ int run_suite(const Options& options) {
 
 void add_suite_command(CLI::App& app, Action& action) {
   CLI::App* const command =
-      app.add_subcommand("suite", "Compare scenes on pairs of devices under several settings, with one page over all");
+      app.add_subcommand("suite", "Compare pairs of devices on many scenes and settings, in one page");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "Scenes, devices and settings")
+  command->add_option("FILE", options->file, "The suite: scenes, devices and settings")
       ->type_name("FILE.json")
       ->capture_default_str();
   command
-      ->add_option("--out", options->folder,
-                   "Folder for index.html, suite.json and the result of each comparison; what it already has is taken "
-                   "over where scene, settings, devices, drivers and this program are the same")
+      ->add_option(
+          "--out", options->folder,
+          "Folder for index.html, suite.json and the result of each comparison; results that it already holds are "
+          "reused if scene, settings, devices, drivers and this program are unchanged")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_flag("--fresh", options->fresh, "Take nothing over");
-  command->add_option("--json", options->json, "Write suite.json here too")->type_name("FILE");
+  command->add_flag("--fresh", options->fresh, "Ignore results of earlier runs");
+  command->add_option("--json", options->json, "Write suite.json to this file as well")->type_name("FILE");
   command->add_option("--junit", options->junit, "Write the verdicts as JUnit XML, for CI")->type_name("FILE");
   add_whole_number(*command, "--threads", options->execution.threads, 0, 1024,
-                   "Worker threads of the CPU device; 0: as many as the machine has");
+                   "Worker threads of the CPU devices; 0: one per hardware thread");
   command->add_flag("--validation", options->execution.validation,
-                    "Turn the Vulkan validation layers on; their messages go to standard error");
+                    "Enable the Vulkan validation layers; their messages go to standard error");
   command->footer(
-      "Exit code: 0 all agree, 1 a comparison differs or failed, 2 error, 130 interrupted: the same command goes on.\n"
+      "Exit code: 0 all agree, 1 a comparison differs or failed, 2 error, 130 interrupted: run it again to continue.\n"
       "Examples:\n"
       "  tandem suite scenes/suite.json --out suite\n"
       "  tandem suite nightly.json --out nightly --junit nightly.xml");

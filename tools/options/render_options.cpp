@@ -28,66 +28,70 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->required()
       ->type_name("FILE");
   command.add_flag("--allow-missing-mtl", options.allow_missing_mtl,
-                   "Go on with grey or opaque materials, and a warning, where an MTL file or a texture is not there");
+                   "Warn about a missing MTL file or texture and use a grey or opaque material instead of failing");
   const auto group = [&](const char* name) { return command.add_option_group(name); };
   pathtracer::SceneSettings& settings = options.settings;
 
-  CLI::App& image = *group("Image (what is not given is as the scene's file says, or as in brackets)");
+  CLI::App& image = *group("Image (defaults: the scene file, or else the value in brackets)");
   add_size(image, "--size", options.size, "Width and height in pixels [512x512]");
   add_whole_number(image, "--spp", settings.samples, 1, most_samples, "Samples per pixel [16]");
   add_whole_number(image, "--depth", settings.max_depth, 1, most_depth,
-                   "Path segments from the camera on: 1 sees emitters only, 2 adds direct light [8]");
+                   "Maximum number of path segments: 1 shows emitters only, 2 adds direct light [8]");
   add_whole_number(image, "--seed", settings.seed, 0, std::numeric_limits<std::uint32_t>::max(),
                    "Seed of the random numbers [0]");
 
   CLI::App& view = *group("View");
   add_named(view, "--camera", options.camera, pathtracer::camera_names(), "Kind of camera [perspective]");
   add_vector(view, "--camera-position", options.camera_position, any, "X,Y,Z",
-             "Where the camera is, in the scene's units [chosen to show the whole scene]");
+             "Camera position, in scene units [chosen to show the whole scene]");
   add_vector(view, "--camera-target", options.camera_target, any, "X,Y,Z",
-             "The point that the camera looks at [chosen, or the scene's centre]");
+             "Point that the camera looks at [the scene's centre, or chosen with the position]");
   add_number(view, "--fov", options.field_of_view, 1.0F, 175.0F, "DEGREES",
              "Vertical field of view [40, or chosen with the camera]");
   add_number(view, "--view-height", options.view_height, 0.0F, most, "LENGTH",
-             "Orthographic: height of what the picture shows [what the perspective camera sees at its target]");
+             "Orthographic camera: height of the view [that of the perspective view at its target]");
   add_number(view, "--lens-radius", options.lens_radius, 0.0F, most, "LENGTH",
-             "Radius of the lens: what is out of focus blurs [0]");
+             "Radius of a thin lens, for depth of field [0: pinhole]");
   add_number(view, "--focus-distance", options.focus_distance, 0.0F, most, "LENGTH",
-             "Distance of what is in focus [that of the target]");
+             "Distance of the plane in focus [that of the target]");
   add_vector(view, "--background", settings.background, 0.0F, "R,G,B",
              "Radiance of rays that leave the scene [0,0,0; 1,1,1 for a scene without emitters]");
 
   CLI::App& method = *group("Method");
-  add_named(method, "--integrator", settings.integrator, pathtracer::integrator_names(),
-            "path: all light; direct: lights and their direct light; ambient-occlusion: how open each place is [path]");
-  add_named(method, "--sampler", settings.sampler, pathtracer::sampler_names(), "Where samples lie [independent]");
-  add_switch(method, "--nee", settings.light_sampling, "Next event estimation: rays to lights at every vertex [on]");
+  add_named(
+      method, "--integrator", settings.integrator, pathtracer::integrator_names(),
+      "path: full path tracing; direct: emitters and direct light only; ambient-occlusion: fraction of the hemisphere "
+      "that is unoccluded [path]");
+  add_named(method, "--sampler", settings.sampler, pathtracer::sampler_names(),
+            "Generator of the sample points [independent]");
+  add_switch(method, "--nee", settings.light_sampling, "Next event estimation: sample a light at every vertex [on]");
   add_named(method, "--mis", settings.mis, pathtracer::mis_names(),
-            "Heuristic by which rays to lights and scattered rays that meet one are weighted [power]");
+            "Heuristic that weights light samples against BSDF samples [power]");
   add_named(method, "--bsdf-sampling", settings.bsdf_sampling, pathtracer::bsdf_sampling_names(),
-            "Directions of scattered rays, for materials that are not perfectly specular [bsdf]");
-  add_switch(method, "--roulette", settings.roulette, "Russian roulette ends paths that carry little [on]");
+            "Distribution of scattered directions, for materials that are not perfectly specular [bsdf]");
+  add_switch(method, "--roulette", settings.roulette,
+             "Russian roulette: end paths of low throughput early, without bias [on]");
   add_whole_number(method, "--max-diffuse-depth", settings.max_diffuse_depth, 0, most_depth,
-                   "Diffuse scattering events of a path [no bound but --depth]");
-  add_whole_number(method, "--max-glossy-depth", settings.max_glossy_depth, 0, most_depth, "Glossy ones [likewise]");
+                   "Maximum number of diffuse scattering events of a path [limited by --depth only]");
+  add_whole_number(method, "--max-glossy-depth", settings.max_glossy_depth, 0, most_depth,
+                   "Maximum number of glossy scattering events of a path [limited by --depth only]");
   add_whole_number(method, "--max-specular-depth", settings.max_specular_depth, 0, most_depth,
-                   "Specular ones [likewise]");
+                   "Maximum number of specular scattering events of a path [limited by --depth only]");
   add_number(method, "--clamp-direct", settings.clamp_direct, 0.0F, most, "RADIANCE",
-             "Largest radiance that one sample adds at its first vertex, against fireflies; biased [0: no bound]");
+             "Clamp what a sample adds at its first vertex, against fireflies; biased [0: no clamping]");
   add_number(method, "--clamp-indirect", settings.clamp_indirect, 0.0F, most, "RADIANCE",
-             "The same for later vertices [0: no bound]");
+             "Clamp what a sample adds at later vertices; biased [0: no clamping]");
   add_number(method, "--occlusion-length", settings.occlusion_length, 0.0F, most, "LENGTH",
-             "Ambient occlusion: how far its rays reach [no bound]");
+             "Ambient occlusion: maximum distance of an occluder [unlimited]");
 
   CLI::App& execution = *group("Execution");
   add_whole_number(execution, "--threads", options.threads, 0, most_threads,
-                   "Worker threads of the CPU device; 0: as many as the machine has");
-  add_tracing_mode(
-      execution, "--trace", options.trace,
-      "How rays are traced: query (ray queries) or pipeline (a ray tracing pipeline); the image is the same "
-      "[what the device has, query first]");
+                   "Worker threads of the CPU devices; 0: one per hardware thread");
+  add_tracing_mode(execution, "--trace", options.trace,
+                   "Tracing mode: query (ray queries) or pipeline (a ray tracing pipeline); both give the same image "
+                   "[query where the device supports it]");
   execution.add_flag("--validation", options.validation,
-                     "Turn the Vulkan validation layers on; their messages go to standard error");
+                     "Enable the Vulkan validation layers; their messages go to standard error");
 }
 
 void add_tone_options(CLI::App& command, pathtracer::Tone& tone) {
@@ -97,8 +101,8 @@ void add_tone_options(CLI::App& command, pathtracer::Tone& tone) {
   add_choice(
       group, "--tone-map", names,
       [&tone](std::size_t index) { tone.curve = pathtracer::tone_curve_names()[index].value; },
-      "How .png files show radiance: srgb and gamma clamp at 1, reinhard and filmic compress [srgb]");
-  add_number(group, "--exposure", tone.exposure, -100.0F, 100.0F, "Stops by which .png files are brightened");
+      "Tone curve of .png files: srgb and gamma clamp at 1, reinhard and filmic compress highlights [srgb]");
+  add_number(group, "--exposure", tone.exposure, -100.0F, 100.0F, "Exposure of .png files, in stops");
 }
 
 void add_tracing_mode(CLI::App& command, const std::string& name, std::optional<pathtracer::TracingMode>& value,
@@ -111,7 +115,7 @@ void add_tracing_mode(CLI::App& command, const std::string& name, std::optional<
     }
     throw CLI::ValidationError(name, "'" + text + "' is neither 'query' nor 'pipeline'");
   };
-  command.add_option_function<std::string>(name, read, description)->type_name("FORM");
+  command.add_option_function<std::string>(name, read, description)->type_name("MODE");
 }
 
 }  // namespace tandem::tools

@@ -13,8 +13,8 @@
 
 namespace tandem::tools {
 
-/// What render, diff and bench have in common: a scene and how it is seen. What the command line does not say is left
-/// to the scene's file.
+/// The options of every command that renders a scene: the scene, its view and the settings. Options that are not given
+/// come from the scene file.
 struct RenderOptions {
   std::filesystem::path scene;
   pathtracer::SceneSettings settings;        ///< but the size

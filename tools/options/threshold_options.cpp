@@ -20,18 +20,18 @@ constexpr const char* bias_p_value = "--min-p-value";
 
 void add_threshold_options(CLI::App& command, ThresholdOptions& options) {
   CLI::App& group =
-      *command.add_option_group("Verdict (what is not given is as SCENE.thresholds.json says, or as in brackets)");
+      *command.add_option_group("Verdict (defaults: SCENE.thresholds.json, or else the value in brackets)");
   add_named(group, "--tier", options.tier, compare::tier_names(),
-            "exact: every bit; tolerance: the same picture but for rounding; statistical: the same but for noise "
-            "[tolerance]");
-  add_number(group, within_1e3, options.within_1e3, 0.0, 1.0, "Least fraction of pixels within 1e-3 relative [0.99]");
-  add_number(group, bit_equal, options.bit_equal, 0.0, 1.0, "Least fraction of bit-equal pixels [0]");
+            "exact: every bit equal; tolerance: equal up to rounding; statistical: equal up to noise [tolerance]");
+  add_number(group, within_1e3, options.within_1e3, 0.0, 1.0,
+             "Minimum fraction of pixels within a relative difference of 1e-3 [0.99]");
+  add_number(group, bit_equal, options.bit_equal, 0.0, 1.0, "Minimum fraction of bit-equal pixels [0]");
   add_number(group, mean_difference, options.mean_difference, 0.0, 1.0,
-             "Largest relative difference of the images' means [1e-4]");
+             "Maximum relative difference of the image means [1e-4]");
   add_whole_number(group, non_finite, options.non_finite, 0, std::numeric_limits<std::uint32_t>::max(),
-                   "Most pixels of an image with a NaN or an infinity [0]");
+                   "Maximum number of pixels of an image with a NaN or an infinity [0]");
   add_number(group, bias_p_value, options.bias_p_value, 0.0, 1.0,
-             "Tier statistical: rate of false alarms; a smaller p-value is a bias [1e-4]");
+             "Tier statistical: minimum p-value, which is also the rate of false alarms [1e-4]");
 }
 
 void apply(const ThresholdOptions& options, compare::Thresholds& thresholds) {
@@ -40,7 +40,7 @@ void apply(const ThresholdOptions& options, compare::Thresholds& thresholds) {
   const auto set = [&](const char* option, RuleMetric metric, const auto& limit) {
     if (!limit) return;
     if (!compare::applies(metric, thresholds.tier))
-      throw Error(fmt::format("{} means nothing in tier {}", option, compare::name(thresholds.tier)));
+      throw Error(fmt::format("{} has no meaning in tier {}", option, compare::name(thresholds.tier)));
     thresholds.set({metric, static_cast<double>(*limit), fmt::format("given by {}", option)});
   };
   set(within_1e3, RuleMetric::within_1e3, options.within_1e3);

@@ -36,7 +36,7 @@ OutputFolder::OutputFolder(std::filesystem::path path) : path_(std::move(path)) 
   error.clear();
   std::filesystem::create_directories(path_, error);
   if (!std::filesystem::is_directory(path_)) {
-    throw Error(fmt::format("the folder '{}' cannot be made: {}", path_.string(),
+    throw Error(fmt::format("cannot create the folder '{}': {}", path_.string(),
                             error ? error.message() : "a file of that name exists"));
   }
 }
@@ -83,8 +83,7 @@ void write_or_rescue(std::span<const OutputFile> files) {
     }
   }
   if (!rescue.empty()) std::filesystem::remove(rescue, not_empty);
-  if (!first_loss.empty())
-    throw Error(fmt::format("{}; nor could it be saved elsewhere: {}", first_reason, first_loss));
+  if (!first_loss.empty()) throw Error(fmt::format("{}; saving it elsewhere failed too: {}", first_reason, first_loss));
   if (!first_reason.empty()) {
     throw Error(fmt::format("{}; what could not be written there was saved in '{}'", first_reason, rescue.string()));
   }

@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "tools/output/interruption.hpp"
 
 namespace tandem::tools {
 
@@ -28,6 +32,27 @@ void ProgressBar::show(double fraction) {
   std::fflush(stderr);
   drawn_ = true;
   last_drawn_ = now;
+}
+
+StageProgress progress_bars() {
+  struct Current {
+    std::string stage;
+    std::optional<ProgressBar> bar;
+  };
+  return [current = std::make_shared<Current>()](std::string_view stage, double fraction) {
+    if (!current->bar || current->stage != stage) {
+      current->bar.reset();  // clears its line before another is drawn
+      current->stage = stage;
+      current->bar.emplace(current->stage);
+    }
+    current->bar->show(fraction);
+    if (fraction >= 1) current->bar.reset();
+    return !interrupted();
+  };
+}
+
+Progress progress_bar(const std::string& label) {
+  return [bars = progress_bars(), label](double fraction) { return bars(label, fraction); };
 }
 
 }  // namespace tandem::tools

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <string>
 
+#include "base/progress.hpp"
+
 namespace tandem::tools {
 
 /// A bar with the percentage on the last line of a terminal, for work that takes longer than a second. Shows nothing
@@ -27,5 +29,10 @@ class ProgressBar {
   Clock::time_point started_ = Clock::now();
   Clock::time_point last_drawn_ = started_;
 };
+
+/// Progress as a bar for each stage. Cancels when the user has interrupted the program.
+StageProgress progress_bars();
+/// The same for work of one stage.
+Progress progress_bar(const std::string& label);
 
 }  // namespace tandem::tools

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tools/baseline.hpp"
+#include "tools/report/baseline.hpp"
 
 namespace tandem::tools {
 

@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <iterator>
 
-#include "tools/rendering.hpp"
 #include "tools/report/device_json.hpp"
+#include "tools/report/job_report.hpp"
+#include "tools/report/speed.hpp"
 #include "tools/report/spread.hpp"
 
 namespace tandem::tools {
 namespace {
 
-double camera_paths(const JobSummary& job) {
+double camera_paths(const compare::JobSummary& job) {
   return static_cast<double>(job.settings.width) * job.settings.height * job.samples;
 }
 
@@ -71,6 +72,7 @@ nlohmann::ordered_json to_json(const BenchReport& report) {
     entry["speed_ratio"] = spread_json(speed_ratio(report.series.front(), series));
     json["devices"].push_back(std::move(entry));
   }
+  json["format"] = json_format;
   json["version"] = TANDEM_VERSION;
   return json;
 }

@@ -1,11 +1,13 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "compare/session/job.hpp"
+#include "pathtracer/render/tracing_mode.hpp"
 #include "rhi/device.hpp"
-#include "tools/report/job_report.hpp"
 
 namespace tandem::tools {
 
@@ -19,7 +21,7 @@ struct BenchSeries {
 };
 
 struct BenchReport {
-  JobSummary job;
+  compare::JobSummary job;
   std::uint32_t threads = 0;        ///< of the CPU device; 0: all
   std::vector<BenchSeries> series;  ///< in the order of the command line; the same number of rounds each
 };

@@ -63,11 +63,10 @@ std::string table(const compare::Classification& classification) {
   std::size_t wrong_sums = 0;
   for (const compare::ClassifiedPixel& pixel : classification.pixels) {
     if (pixel.wrong_sum == 0 || ++wrong_sums > most_in_table) continue;
-    line("", fmt::format("pixel {},{}: the picture of {} is not the sum of its paths", pixel.pixel.x, pixel.pixel.y,
+    line("", fmt::format("pixel {},{}: the image of {} is not the sum of its paths", pixel.pixel.x, pixel.pixel.y,
                          pixel.wrong_sum));
   }
-  if (wrong_sums > most_in_table)
-    line("", fmt::format("and {} more pixels that are no sums", wrong_sums - most_in_table));
+  if (wrong_sums > most_in_table) line("", fmt::format("and {} more such pixels", wrong_sums - most_in_table));
   for (const Listed& each : listed(classification, most_in_table, false)) {
     const pathtracer::PathId& path = each.path->path;
     line("", fmt::format("pixel {},{} sample {}, {}: {}", path.pixel.x, path.pixel.y, path.sample,

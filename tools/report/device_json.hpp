@@ -7,6 +7,10 @@
 
 namespace tandem::tools {
 
+/// "format" of every JSON file that a command writes. It grows when a key changes its name, type or meaning, or goes;
+/// new keys may come without (docs/schema).
+inline constexpr int json_format = 1;
+
 /// name, backend, description, driver, api and kind.
 nlohmann::ordered_json to_json(const rhi::DeviceInfo& device);
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "tools/report/device_json.hpp"
+#include "tools/report/job_report.hpp"
 #include "tools/report/probe_report.hpp"
 
 namespace tandem::tools {
@@ -69,18 +70,18 @@ nlohmann::ordered_json divergence_json(const compare::Divergence& divergence) {
   return json;
 }
 
-nlohmann::ordered_json sample_json(const ExplainedSample& sample) {
+nlohmann::ordered_json sample_json(const compare::ExplainedSample& sample) {
   nlohmann::ordered_json json = {{"sample", sample.sample}, {"differs", sample.differs}};
-  if (!sample.judgement) return json;
-  const std::optional<compare::DifferenceClass> worst = sample.judgement->worst();
+  if (!sample.classified) return json;
+  const std::optional<compare::DifferenceClass> worst = sample.classified->worst();
   json["class"] = worst ? nlohmann::ordered_json(compare::name(*worst)) : nlohmann::ordered_json(nullptr);
   json["divergences"] = nlohmann::ordered_json::array();
-  for (const compare::Divergence& divergence : sample.judgement->divergences)
+  for (const compare::Divergence& divergence : sample.classified->divergences)
     json["divergences"].push_back(divergence_json(divergence));
   return json;
 }
 
-nlohmann::ordered_json first_json(const Explanation& explanation) {
+nlohmann::ordered_json first_json(const compare::Explanation& explanation) {
   if (!explanation.first) return nullptr;
   const compare::FirstDifference& first = *explanation.first;
   const EventPair& pair = explanation.events[first.pair];
@@ -135,7 +136,7 @@ nlohmann::ordered_json events_json(std::span<const EventPair> pairs, const compa
   return events;
 }
 
-nlohmann::ordered_json to_json(const Explanation& explanation) {
+nlohmann::ordered_json to_json(const compare::Explanation& explanation) {
   nlohmann::ordered_json json = {{"device_a", to_json(explanation.a)},
                                  {"device_b", to_json(explanation.b)},
                                  {"arbiter", to_json(explanation.arbiter)},
@@ -147,12 +148,13 @@ nlohmann::ordered_json to_json(const Explanation& explanation) {
                                  {"samples", nlohmann::ordered_json::array()},
                                  {"sample", explanation.shown_sample().sample},
                                  {"first_difference", first_json(explanation)}};
-  for (const ExplainedSample& sample : explanation.samples) json["samples"].push_back(sample_json(sample));
+  for (const compare::ExplainedSample& sample : explanation.samples) json["samples"].push_back(sample_json(sample));
   json["observed"] = {{"fields", explanation.observed.fields},
                       {"differing", explanation.observed.differing},
                       {"relative", explanation.observed.relative_difference}};
   json["events"] = events_json(explanation.events, explanation.names);
   if (explanation.probing) json["probes"] = to_json(*explanation.probing);
+  json["format"] = json_format;
   json["version"] = TANDEM_VERSION;
   return json;
 }

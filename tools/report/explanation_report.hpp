@@ -7,7 +7,7 @@
 
 #include "compare/path/alignment.hpp"
 #include "compare/path/scene_names.hpp"
-#include "tools/explanation.hpp"
+#include "compare/session/explanation.hpp"
 
 /// Paths on two devices, for people and for programs.
 namespace tandem::tools {
@@ -30,9 +30,9 @@ struct ExplanationTableOptions {
 };
 
 /// What differs first and why, then the events side by side.
-std::string table(const Explanation& explanation, const ExplanationTableOptions& options = {});
+std::string table(const compare::Explanation& explanation, const ExplanationTableOptions& options = {});
 
 /// The same for programs, with all events; docs/guide/explain.md lists the keys.
-nlohmann::ordered_json to_json(const Explanation& explanation);
+nlohmann::ordered_json to_json(const compare::Explanation& explanation);
 
 }  // namespace tandem::tools

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "tools/report/explanation_report.hpp"
+#include "tools/report/job_report.hpp"
 #include "tools/report/probe_report.hpp"
 
 // The text that `tandem explain` prints.
@@ -131,7 +132,7 @@ void add_line(const EventPair& pair, const compare::SceneNames& names, std::vect
 }
 
 /// A segment is shown whole where the paths part, by a line for each event behind that, and by a line for all before.
-std::vector<Row> event_rows(const Explanation& explanation, bool all_events) {
+std::vector<Row> event_rows(const compare::Explanation& explanation, bool all_events) {
   std::vector<Row> rows;
   const std::span<const EventPair> events = explanation.events;
   const std::size_t first = explanation.first ? explanation.first->pair : events.size();
@@ -185,9 +186,9 @@ std::string sample_list(std::span<const std::uint32_t> samples) {
   return text + (samples.size() > listed ? ", ..." : "");
 }
 
-std::string pixel_text(const Explanation& explanation) {
+std::string pixel_text(const compare::Explanation& explanation) {
   std::vector<std::uint32_t> differing;
-  for (const ExplainedSample& sample : explanation.samples)
+  for (const compare::ExplainedSample& sample : explanation.samples)
     if (sample.differs) differing.push_back(sample.sample);
   const std::string pixel = fmt::format("{},{}", explanation.pixel.x, explanation.pixel.y);
   const std::size_t count = explanation.samples.size();
@@ -199,7 +200,7 @@ std::string pixel_text(const Explanation& explanation) {
                      sample_list(differing));
 }
 
-std::string path_text(const Explanation& explanation) {
+std::string path_text(const compare::Explanation& explanation) {
   std::size_t segments_a = 0, segments_b = 0;
   for (const EventPair& pair : explanation.events) {
     segments_a += pair.a && pair.a->kind() == EventKind::segment ? 1u : 0u;
@@ -210,7 +211,7 @@ std::string path_text(const Explanation& explanation) {
 
 using Line = std::function<void(std::string_view name, std::string_view value)>;
 
-void print_first(const Explanation& explanation, const Line& line) {
+void print_first(const compare::Explanation& explanation, const Line& line) {
   const compare::FirstDifference& first = *explanation.first;
   const EventPair& pair = explanation.events[first.pair];
   const std::string event = fmt::format("segment {}, {}", pair.segment(), compare::name(pair.kind()));
@@ -225,11 +226,11 @@ void print_first(const Explanation& explanation, const Line& line) {
     line("  distance", fmt::format("{} ULP, {:.3g} relative", first.ulp_distance, first.relative_difference));
 }
 
-void print_divergences(const Explanation& explanation, const Line& line) {
-  const ExplainedSample& shown = explanation.shown_sample();
-  if (!shown.judgement) return;
+void print_divergences(const compare::Explanation& explanation, const Line& line) {
+  const compare::ExplainedSample& shown = explanation.shown_sample();
+  if (!shown.classified) return;
   bool later = false;
-  for (const compare::Divergence& divergence : shown.judgement->divergences) {
+  for (const compare::Divergence& divergence : shown.classified->divergences) {
     const std::string place =
         fmt::format("{} (segment {}, {}{}{})", compare::name(divergence.difference_class), divergence.segment,
                     compare::name(divergence.a.kind()), divergence.field != nullptr ? ", " : "",
@@ -238,9 +239,9 @@ void print_divergences(const Explanation& explanation, const Line& line) {
     line("", divergence.sentence);
     later = true;
   }
-  for (const ExplainedSample& sample : explanation.samples) {
-    if (&sample == &shown || !sample.judgement) continue;
-    if (const auto worst = sample.judgement->worst())
+  for (const compare::ExplainedSample& sample : explanation.samples) {
+    if (&sample == &shown || !sample.classified) continue;
+    if (const auto worst = sample.classified->worst())
       line(fmt::format("sample {}", sample.sample), compare::name(*worst));
   }
 }
@@ -254,7 +255,7 @@ void print_observed(const compare::ObservedDifferences& observed, const Line& li
 
 }  // namespace
 
-std::string table(const Explanation& explanation, const ExplanationTableOptions& options) {
+std::string table(const compare::Explanation& explanation, const ExplanationTableOptions& options) {
   std::string text;
   const Line line = [&](std::string_view name, std::string_view value) {
     fmt::format_to(std::back_inserter(text), "{:<18}{}\n", name, value);

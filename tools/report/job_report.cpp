@@ -4,8 +4,6 @@
 
 #include <iterator>
 
-#include "pathtracer/scene/hash.hpp"
-
 namespace tandem::tools {
 namespace {
 
@@ -17,21 +15,12 @@ nlohmann::ordered_json vector_json(const glm::vec3& vector) { return {vector.x, 
 
 }  // namespace
 
-JobSummary summary(const RenderOptions& options, const RenderJob& job) {
-  return {.scene = options.scene.string(),
-          .scene_hash = pathtracer::scene_hash(job.scene),
-          .triangles = job.scene.triangles.size(),
-          .spheres = job.scene.spheres.size(),
-          .settings = job.settings,
-          .samples = job.samples};
-}
-
-std::string scene_text(const JobSummary& job) {
+std::string scene_text(const compare::JobSummary& job) {
   const std::string spheres = job.spheres > 0 ? fmt::format(", {} spheres", job.spheres) : std::string();
   return fmt::format("{} ({} triangles{})", job.scene, job.triangles, spheres);
 }
 
-std::string settings_text(const JobSummary& job) {
+std::string settings_text(const compare::JobSummary& job) {
   const pathtracer::RenderSettings& settings = job.settings;
   const pathtracer::RenderSettings usual;
   std::string text = fmt::format("{}x{}, {} spp, depth {}, seed {}", settings.width, settings.height, job.samples,
@@ -59,7 +48,7 @@ std::string settings_text(const JobSummary& job) {
   return text;
 }
 
-nlohmann::ordered_json to_json(const JobSummary& job) {
+nlohmann::ordered_json to_json(const compare::JobSummary& job) {
   const pathtracer::RenderSettings& settings = job.settings;
   return {{"scene", job.scene},
           {"scene_hash", job.scene_hash},
@@ -84,7 +73,7 @@ nlohmann::ordered_json to_json(const JobSummary& job) {
           {"occlusion_length", settings.occlusion_length}};
 }
 
-nlohmann::ordered_json settings_json(const JobSummary& job, const pathtracer::Camera& camera,
+nlohmann::ordered_json settings_json(const compare::JobSummary& job, const pathtracer::Camera& camera,
                                      const glm::vec3& background) {
   nlohmann::ordered_json json = to_json(job);
   json["camera"] = name_of(pathtracer::camera_names(), camera.kind);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "tools/report/device_json.hpp"
+#include "tools/report/job_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -31,9 +32,9 @@ const MatrixPair& pair_of(const MatrixReport& report, std::size_t first, std::si
   });
 }
 
-std::string sides_text(const MatrixReport& report, const compare::Tie& tie) {
+std::string sides_text(const MatrixReport& report, const compare::SplitVote& split) {
   std::vector<std::string> sides;
-  for (const compare::DeviceIndices& side : tie.sides)
+  for (const compare::DeviceIndices& side : split.sides)
     sides.push_back(fmt::format("{}", fmt::join(device_names(report, side), ", ")));
   return fmt::format("{}", fmt::join(sides, " against "));
 }
@@ -44,8 +45,8 @@ bool MatrixReport::agree() const {
   return std::ranges::all_of(pairs, [](const MatrixPair& pair) { return pair.verdict.agree; });
 }
 
-MatrixReport compare_all(const JobSummary& job, const compare::Thresholds& thresholds,
-                         std::vector<Rendering> renderings) {
+MatrixReport compare_all(const compare::JobSummary& job, const compare::Thresholds& thresholds,
+                         std::vector<compare::Rendering> renderings) {
   MatrixReport report{.job = job,
                       .thresholds = thresholds,
                       .renderings = std::move(renderings),
@@ -58,12 +59,12 @@ MatrixReport compare_all(const JobSummary& job, const compare::Thresholds& thres
     for (std::size_t b = a + 1; b < count; ++b) {
       MatrixPair pair{.a = a, .b = b, .metrics = {}, .verdict = {}};
       pair.metrics = compare::measure(report.renderings[a].image, report.renderings[b].image);
-      pair.verdict = compare::judge({.metrics = pair.metrics}, thresholds);
+      pair.verdict = compare::make_verdict({.metrics = pair.metrics}, thresholds);
       agree[a][b] = agree[b][a] = pair.verdict.agree;
       report.pairs.push_back(std::move(pair));
     }
   std::vector<pathtracer::Image> images;
-  for (const Rendering& rendering : report.renderings) images.push_back(rendering.image);
+  for (const compare::Rendering& rendering : report.renderings) images.push_back(rendering.image);
   report.vote = compare::vote(images);
   report.outvoted = compare::outvoted_devices(agree);
   return report;
@@ -92,7 +93,7 @@ std::string table(const MatrixReport& report) {
   line("settings", settings_text(report.job));
   text += '\n';
   std::string header;
-  for (const Rendering& rendering : report.renderings) header += fmt::format("{:>20}", rendering.device.name);
+  for (const compare::Rendering& rendering : report.renderings) header += fmt::format("{:>20}", rendering.device.name);
   line("bit-equal", header);
   for (std::size_t row = 0; row < report.renderings.size(); ++row) {
     std::string cells;
@@ -109,7 +110,7 @@ std::string table(const MatrixReport& report) {
   }
   text += '\n';
   line("vote", fmt::format("{} pixels: {} unanimous, {} within tolerance, {} decided, {} tied", vote.pixels,
-                           vote.unanimous, vote.within_tolerance, vote.decided, vote.tied));
+                           vote.unanimous, vote.within_tolerance, vote.decided, vote.undecided));
   for (std::size_t device = 0; device < vote.devices.size(); ++device) {
     const compare::DeviceVotes& votes = vote.devices[device];
     const std::string first = votes.beyond_tolerance > 0
@@ -118,10 +119,10 @@ std::string table(const MatrixReport& report) {
     line("", fmt::format("{} is outvoted in {}, beyond tolerance in {}{}", device_name(report, device), votes.outvoted,
                          votes.beyond_tolerance, first));
   }
-  for (std::size_t index = 0; index < std::min(vote.ties.size(), most_listed); ++index) {
-    const compare::Tie& tie = vote.ties[index];
-    line(index == 0 ? "ties" : "",
-         fmt::format("{}: {}, first at pixel {},{}", sides_text(report, tie), tie.pixels, tie.first.x, tie.first.y));
+  for (std::size_t index = 0; index < std::min(vote.splits.size(), most_listed); ++index) {
+    const compare::SplitVote& split = vote.splits[index];
+    line(index == 0 ? "ties" : "", fmt::format("{}: {}, first at pixel {},{}", sides_text(report, split), split.pixels,
+                                               split.first.x, split.first.y));
   }
   text += '\n';
   line("verdict", report.agree() ? "agree" : "differ");
@@ -131,14 +132,14 @@ std::string table(const MatrixReport& report) {
 
 nlohmann::ordered_json to_json(const MatrixReport& report) {
   using Json = nlohmann::ordered_json;
-  const Rendering& first = report.renderings.front();
+  const compare::Rendering& first = report.renderings.front();
   Json json = {{"verdict", report.agree() ? "agree" : "differ"},
                {"reasons", reasons(report)},
                {"outvoted", device_names(report, report.outvoted)},
                {"devices", Json::array()},
                {"pairs", Json::array()}};
   for (std::size_t index = 0; index < report.renderings.size(); ++index) {
-    const Rendering& rendering = report.renderings[index];
+    const compare::Rendering& rendering = report.renderings[index];
     const compare::DeviceVotes& votes = report.vote.devices[index];
     Json device = to_json(rendering.device);
     device["trace"] = pathtracer::name(rendering.trace);
@@ -162,14 +163,16 @@ nlohmann::ordered_json to_json(const MatrixReport& report) {
                   {"unanimous", report.vote.unanimous},
                   {"within_tolerance", report.vote.within_tolerance},
                   {"decided", report.vote.decided},
-                  {"tied", report.vote.tied},
+                  {"tied", report.vote.undecided},
                   {"ties", Json::array()}};
-  for (const compare::Tie& tie : report.vote.ties) {
+  for (const compare::SplitVote& split : report.vote.splits) {
     Json sides = Json::array();
-    for (const compare::DeviceIndices& side : tie.sides) sides.push_back(device_names(report, side));
-    json["vote"]["ties"].push_back({{"sides", sides}, {"pixels", tie.pixels}, {"first", {tie.first.x, tie.first.y}}});
+    for (const compare::DeviceIndices& side : split.sides) sides.push_back(device_names(report, side));
+    json["vote"]["ties"].push_back(
+        {{"sides", sides}, {"pixels", split.pixels}, {"first", {split.first.x, split.first.y}}});
   }
   json["settings"] = settings_json(report.job, first.camera, first.background);
+  json["format"] = json_format;
   json["version"] = TANDEM_VERSION;
   return json;
 }

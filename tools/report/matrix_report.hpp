@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "compare/image/vote.hpp"
+#include "compare/session/rendering.hpp"
 #include "compare/verdict/thresholds.hpp"
 #include "compare/verdict/verdict.hpp"
-#include "tools/rendering.hpp"
 #include "tools/report/job_report.hpp"
 
 /// More than two devices on one scene.
@@ -23,9 +23,9 @@ struct MatrixPair {
 
 /// All that `tandem matrix` found out.
 struct MatrixReport {
-  JobSummary job;
+  compare::JobSummary job;
   compare::Thresholds thresholds;
-  std::vector<Rendering> renderings;  ///< of each device
+  std::vector<compare::Rendering> renderings;  ///< of each device
   std::vector<MatrixPair> pairs;
   compare::Vote vote;
   compare::DeviceIndices outvoted;  ///< as a whole
@@ -35,8 +35,8 @@ struct MatrixReport {
 };
 
 /// Compares the pictures of each two devices, and lets all vote. Throws rhi::Error for fewer than three.
-MatrixReport compare_all(const JobSummary& job, const compare::Thresholds& thresholds,
-                         std::vector<Rendering> renderings);
+MatrixReport compare_all(const compare::JobSummary& job, const compare::Thresholds& thresholds,
+                         std::vector<compare::Rendering> renderings);
 
 /// Which device is outvoted, or which pairs differ; none when all agree.
 std::vector<std::string> reasons(const MatrixReport& report);

@@ -7,12 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "compare/cause/path_classifier.hpp"
 #include "compare/path/alignment.hpp"
 #include "compare/path/scene_names.hpp"
 #include "compare/report/page.hpp"
 #include "compare/report/ranking.hpp"
-#include "tools/report/device_json.hpp"
+#include "pathtracer/render/path_recorder.hpp"
 #include "tools/report/explanation_report.hpp"
 
 namespace tandem::tools {
@@ -26,7 +25,7 @@ constexpr std::size_t ranked_pixels = 10'000;
 constexpr std::size_t recorded_pixels = 64;
 
 /// Of each pixel the sample to look at: the first with the worst divergence, else the first that differs, else 0.
-std::vector<PathStart> starts_of(Comparison& comparison, const compare::Classification* classification,
+std::vector<PathStart> starts_of(compare::Session& session, const compare::Classification* classification,
                                  const std::vector<compare::RankedPixel>& pixels) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, const compare::ClassifiedPath*> classified;
   if (classification != nullptr) {
@@ -43,24 +42,25 @@ std::vector<PathStart> starts_of(Comparison& comparison, const compare::Classifi
       path = found->second->path;
     } else {
       std::vector<PathStart> samples;
-      for (std::uint32_t sample = 0; sample < comparison.job.samples; ++sample)
+      for (std::uint32_t sample = 0; sample < session.job.samples; ++sample)
         samples.push_back({.path = {.pixel = ranked.pixel, .sample = sample}});
-      const auto of_a = comparison.a.summarize_paths(samples), of_b = comparison.b.summarize_paths(samples);
+      const auto of_a = summarize_paths(session.a.scene(), samples), of_b = summarize_paths(session.b.scene(), samples);
       for (std::size_t i = samples.size(); i-- > 0;)
-        if (!compare::is_same(of_a[i], of_b[i])) path = samples[i].path;
+        if (of_a[i] != of_b[i]) path = samples[i].path;
     }
     result.push_back({.path = path});
   }
   return result;
 }
 
-std::vector<compare::RecordedPath> recorded_paths(Comparison& comparison, const compare::Classification* classification,
+std::vector<compare::RecordedPath> recorded_paths(compare::Session& session,
+                                                  const compare::Classification* classification,
                                                   const compare::Ranking& ranking) {
   const std::vector<PathStart> starts =
-      starts_of(comparison, classification, compare::pixels_to_record(ranking, recorded_pixels));
+      starts_of(session, classification, compare::pixels_to_record(ranking, recorded_pixels));
   if (starts.empty()) return {};
-  const auto of_a = comparison.a.record_paths(starts), of_b = comparison.b.record_paths(starts);
-  const compare::SceneNames names(comparison.job.scene);
+  const auto of_a = record_paths(session.a.scene(), starts), of_b = record_paths(session.b.scene(), starts);
+  const compare::SceneNames names(session.job.scene);
   std::vector<compare::RecordedPath> result;
   for (std::size_t i = 0; i < starts.size(); ++i)
     result.push_back(
@@ -70,27 +70,29 @@ std::vector<compare::RecordedPath> recorded_paths(Comparison& comparison, const 
 
 }  // namespace
 
-ComparisonOptions with_metrics_for_page(ComparisonOptions options) {
+compare::ComparisonOptions with_metrics_for_page(compare::ComparisonOptions options) {
   if (!options.metrics) options.metrics = compare::MetricSet::all;
   return options;
 }
 
-std::string report_page(Comparison& comparison, const DiffReport& report) {
-  const compare::Classification* const classification = report.classification ? &*report.classification : nullptr;
-  const compare::Ranking ranking = compare::rank_pixels(report.a.image, report.b.image, classification, ranked_pixels);
-  const std::optional<compare::DetailedMetrics>& metrics = report.detailed_metrics;
-  return compare::page(
-      {.title = fmt::format("{}: {} against {}", comparison.summary.scene, report.a.device.name, report.b.device.name),
-       .numbers = json_text(to_json(report)),
-       .a = report.a.image,
-       .b = report.b.image,
-       .flip = metrics && metrics->flip ? &*metrics->flip : nullptr,
-       .classification = classification,
-       .ranking = ranking,
-       // Pictures of other random numbers have no paths that belong together.
-       .paths = report.thresholds.tier == compare::Tier::statistical
-                    ? std::vector<compare::RecordedPath>()
-                    : recorded_paths(comparison, classification, ranking)});
+std::string report_page(compare::Session& session, const compare::Comparison& comparison, const std::string& numbers) {
+  const compare::Classification* const classification =
+      comparison.classification ? &*comparison.classification : nullptr;
+  const compare::Ranking ranking =
+      compare::rank_pixels(comparison.a.image, comparison.b.image, classification, ranked_pixels);
+  const std::optional<compare::DetailedMetrics>& metrics = comparison.detailed_metrics;
+  return compare::page({.title = fmt::format("{}: {} against {}", comparison.job.scene, comparison.a.device.name,
+                                             comparison.b.device.name),
+                        .numbers = numbers,
+                        .a = comparison.a.image,
+                        .b = comparison.b.image,
+                        .flip = metrics && metrics->flip ? &*metrics->flip : nullptr,
+                        .classification = classification,
+                        .ranking = ranking,
+                        // Pictures of other random numbers have no paths that belong together.
+                        .paths = comparison.thresholds.tier == compare::Tier::statistical
+                                     ? std::vector<compare::RecordedPath>()
+                                     : recorded_paths(session, classification, ranking)});
 }
 
 }  // namespace tandem::tools

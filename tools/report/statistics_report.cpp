@@ -4,34 +4,13 @@
 
 #include <iterator>
 
+#include "compare/statistics/bias_text.hpp"
+
 namespace tandem::tools {
 namespace {
 
 using compare::BiasTest;
 using compare::ComparedMean;
-
-std::string text_of(const compare::Tile& tile) {
-  return fmt::format("the {}x{} pixels from {},{} on", tile.width, tile.height, tile.left, tile.top);
-}
-
-std::string text_of(const statistics::Mean& mean) {
-  return fmt::format("{:.5g} +- {:.2g}", mean.value, mean.standard_error);
-}
-
-/// "a has 0.2 +- 0.01, b 0.3 +- 0.01 (+50 %)"
-std::string text_of(const ComparedMean& mean, const std::string& a, const std::string& b) {
-  return fmt::format("{} has {}, {} {} ({:+.3g} %)", a, text_of(mean.a), b, text_of(mean.b),
-                     100 * mean.relative_difference());
-}
-
-compare::BiasFinding finding(const BiasTest& test, const std::string& what, const std::string& a,
-                             const std::string& b) {
-  const bool in_tile = test.tiles_p_value < test.picture_p_value;
-  const ComparedMean& worst = in_tile ? test.worst_tile : test.worst_mean;
-  return {.sentence = fmt::format("{}: in the mean {} of {}, {}", what, compare::name(worst.channel),
-                                  in_tile ? text_of(worst.tile) : "the picture", text_of(worst, a, b)),
-          .p_value = test.p_value};
-}
 
 nlohmann::ordered_json to_json(const compare::Tile& tile) {
   return {{"x", tile.left}, {"y", tile.top}, {"width", tile.width}, {"height", tile.height}};
@@ -61,15 +40,7 @@ nlohmann::ordered_json to_json(const BiasTest& test) {
 
 }  // namespace
 
-std::vector<compare::BiasFinding> bias_findings(const Statistics& statistics) {
-  return {finding(statistics.bias, "The images differ by more than noise", "a", "b"),
-          finding(statistics.control_a, "Device a differs from itself under other seeds by more than noise",
-                  "one picture", "the other"),
-          finding(statistics.control_b, "Device b differs from itself under other seeds by more than noise",
-                  "one picture", "the other")};
-}
-
-std::string table(const Statistics& statistics) {
+std::string table(const compare::Statistics& statistics) {
   const BiasTest& bias = statistics.bias;
   std::string text;
   const auto line = [&](const char* name, const std::string& value) {
@@ -80,10 +51,11 @@ std::string table(const Statistics& statistics) {
                               statistics.batch_samples, statistics.seed_a, statistics.seed_b));
   line("p-value of a, b", fmt::format("{:.3g} (tiles {:.3g}, picture {:.3g}); below {:g} is a bias", bias.p_value,
                                       bias.tiles_p_value, bias.picture_p_value, statistics.level));
-  line("worst tile", fmt::format("{}, {}: {}", text_of(bias.worst_tile.tile), compare::name(bias.worst_tile.channel),
-                                 text_of(bias.worst_tile, "a", "b")));
+  line("worst tile", fmt::format("{}, {}: {}", compare::text_of(bias.worst_tile.tile),
+                                 compare::name(bias.worst_tile.channel), compare::text_of(bias.worst_tile, "a", "b")));
   line("", fmt::format("p-value {:.3g}, one of {} tests", bias.worst_tile.p_value, bias.tile_tests));
-  line("picture", fmt::format("{}: {}", compare::name(bias.worst_mean.channel), text_of(bias.worst_mean, "a", "b")));
+  line("picture",
+       fmt::format("{}: {}", compare::name(bias.worst_mean.channel), compare::text_of(bias.worst_mean, "a", "b")));
   line("noise floor", fmt::format("RMSE {:.4g} of a, b; {:.4g} of a, a; {:.4g} of b, b under other seeds", bias.rmse,
                                   statistics.control_a.rmse, statistics.control_b.rmse));
   line("", fmt::format("p-value {:.3g} of a, a; {:.3g} of b, b", statistics.control_a.p_value,
@@ -95,7 +67,7 @@ std::string table(const Statistics& statistics) {
   return text;
 }
 
-nlohmann::ordered_json to_json(const Statistics& statistics) {
+nlohmann::ordered_json to_json(const compare::Statistics& statistics) {
   nlohmann::ordered_json json = {{"level", statistics.level},
                                  {"batches", statistics.batches},
                                  {"batch_samples", statistics.batch_samples},

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "base/json_value.hpp"
+#include "tools/report/job_report.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -20,8 +21,8 @@ double relative_mean_difference(const compare::Metrics& metrics) {
   return largest > 0 ? std::abs(metrics.mean_a - metrics.mean_b) / largest : 0.0;
 }
 
-const compare::Rule& bit_equal(const DiffReport& report) {
-  return report.thresholds.rule(compare::RuleMetric::bit_equal);
+const compare::Rule& bit_equal(const compare::Comparison& comparison) {
+  return comparison.thresholds.rule(compare::RuleMetric::bit_equal);
 }
 
 }  // namespace
@@ -39,7 +40,7 @@ std::vector<GalleryScene> read_gallery(const std::filesystem::path& path) {
     scene.title = object.require("title").text();
     object.read("samples", scene.samples, &Value::whole_number, 1u, 1u << 24);
     if (std::ranges::any_of(scenes, [&](const GalleryScene& other) { return other.name == scene.name; }))
-      value.fail(fmt::format("has the name of another, {}", scene.name));
+      value.fail(fmt::format("has the same name as another scene, {}", scene.name));
     scenes.push_back(scene);
   }
   if (scenes.empty()) root.require("scenes").fail("must not be empty");
@@ -56,7 +57,7 @@ std::string gallery_markdown(const std::vector<GalleryResult>& results, const st
   std::string text = "# Gallery\n\n";
   const auto line = [&](const std::string& words) { text += words + "\n"; };
   if (!results.empty()) {
-    const DiffReport& first = results.front().report;
+    const compare::Comparison& first = results.front().comparison;
     line("Written by `tandem gallery`. Each scene is rendered on two devices, from the same shader, seed and scene:\n");
     line("| | device | hardware | driver |\n|---|---|---|---|");
     line(fmt::format("| a | {} | {} | {} |", first.a.device.name, first.a.device.description, first.a.device.driver));
@@ -65,31 +66,35 @@ std::string gallery_markdown(const std::vector<GalleryResult>& results, const st
   }
   line("| scene | a | difference | settings | bit-equal pixels | means differ by | seconds a, b | verdict |");
   line("|---|---|---|---|---|---|---|---|");
-  for (const auto& [scene, report] : results) {
+  for (const auto& [scene, comparison] : results) {
     const std::string verdict =
-        report.verdict.agree ? "agree" : fmt::format("**differ**: {}", fmt::join(report.verdict.reasons, "; "));
+        comparison.verdict.agree ? "agree" : fmt::format("**differ**: {}", fmt::join(comparison.verdict.reasons, "; "));
     line(fmt::format(
         "| {}<br>`{}` | ![{}]({}/{}.png) | ![]({}/{}_difference.png) | {} | {:.3f} %, at least {:g} % | {:.1e} | "
         "{:.2f}, {:.2f} | {} |",
         scene.title, scene.file.filename().string(), scene.title, pictures, scene.name, pictures, scene.name,
-        settings_text(report.job), 100 * report.metrics.bit_equal, 100 * bit_equal(report).limit,
-        relative_mean_difference(report.metrics), report.a.milliseconds / 1000, report.b.milliseconds / 1000, verdict));
+        settings_text(comparison.job), 100 * comparison.metrics.bit_equal, 100 * bit_equal(comparison).limit,
+        relative_mean_difference(comparison.metrics), comparison.a.milliseconds / 1000,
+        comparison.b.milliseconds / 1000, verdict));
   }
-  const auto is_unusual = [](const GalleryResult& r) { return bit_equal(r.report).reason != usual_bit_equal_reason; };
+  const auto is_unusual = [](const GalleryResult& r) {
+    return bit_equal(r.comparison).reason != usual_bit_equal_reason;
+  };
   if (std::ranges::any_of(results, is_unusual)) line("\nWhy some scenes may differ at more pixels:\n");
   for (const GalleryResult& result : results)
-    if (is_unusual(result)) line(fmt::format("- `{}`: {}", result.scene.name, bit_equal(result.report).reason));
+    if (is_unusual(result)) line(fmt::format("- `{}`: {}", result.scene.name, bit_equal(result.comparison).reason));
   return text;
 }
 
 nlohmann::ordered_json to_json(const std::vector<GalleryResult>& results) {
   nlohmann::ordered_json json;
-  const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.report.verdict.agree; });
+  const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.comparison.verdict.agree; });
   json["verdict"] = agree ? "agree" : "differ";
+  json["format"] = json_format;
   json["scenes"] = nlohmann::ordered_json::array();
-  for (const auto& [scene, report] : results) {
+  for (const auto& [scene, comparison] : results) {
     nlohmann::ordered_json entry = {{"name", scene.name}, {"title", scene.title}};
-    entry.update(to_json(report));
+    entry.update(to_json(comparison));
     json["scenes"].push_back(entry);
   }
   return json;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pathtracer/image/image.hpp"
-#include "tools/report/diff_report.hpp"
+#include "tools/report/comparison_report.hpp"
 
 /// The gallery: scenes that are rendered on two devices, with the verdict on each.
 namespace tandem::tools {
@@ -28,7 +28,7 @@ compare::Thresholds gallery_thresholds();
 /// A scene with what came of it; the report's images may be dropped.
 struct GalleryResult {
   GalleryScene scene;
-  DiffReport report;
+  compare::Comparison comparison;
 };
 
 /// The page for people: a table with the pictures, which lie in `pictures`, relative to the page.

@@ -66,7 +66,7 @@ void set_option(SuiteCell& cell, const Value& place, const std::string& key, con
   std::ranges::replace(option, '_', '-');
   const CLI::Option* const known = app.get_option_no_throw(option);
   if (known == nullptr || is_about_execution(option) || key.find('-') != std::string::npos)
-    place.fail("is no option of 'tandem diff' that a suite can set");
+    place.fail("is not an option of 'tandem diff' that a suite can set");
   const std::string text = option_text(place, value, known->get_items_expected_max() == 0);
   try {
     app.parse({fmt::format("{}={}", option, text), "scene"});  // in reverse order; the scene is set elsewhere

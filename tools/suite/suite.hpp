@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/comparison.hpp"
+#include "tools/options/comparison_options.hpp"
 #include "tools/options/render_options.hpp"
 
 namespace tandem::tools {
@@ -17,7 +17,7 @@ struct SuiteCell {
   std::string settings;          ///< together with the devices the column
   nlohmann::ordered_json given;  ///< what the suite says of the settings
   RenderOptions render;
-  ComparisonOptions comparison;
+  ComparisonArguments comparison;
   bool report = false;  ///< whether it gets a page of its own
 };
 

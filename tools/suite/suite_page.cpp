@@ -9,10 +9,12 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
+#include "base/base64.hpp"
 #include "compare/report/page_sources.hpp"
 #include "tools/output/xml_text.hpp"
 
@@ -32,25 +34,11 @@ tbody th { padding-top: .6rem; }
 .reasons { clear: both; margin: .2rem 0 0; overflow-wrap: anywhere; }
 )";
 
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t index = 0; index < bytes.size(); index += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - index);
-    std::uint32_t group = 0;
-    for (std::size_t each = 0; each < 3; ++each)
-      group = group << 8 | (each < count ? static_cast<unsigned char>(bytes[index + each]) : 0U);
-    for (std::size_t digit = 0; digit < 4; ++digit)
-      text += digit <= count ? digits[group >> (18 - 6 * digit) & 63U] : '=';
-  }
-  return text;
-}
-
 std::string image(const std::filesystem::path& path, const std::string& words) {
   std::ifstream file(path, std::ios::binary);
   const std::string bytes(std::istreambuf_iterator<char>(file), {});
   return fmt::format("<img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", xml_text(words), xml_text(words),
-                     base64(bytes));
+                     base64(std::as_bytes(std::span(bytes))));
 }
 
 std::string string(const Json& json, const char* key) { return json.at(key).get<std::string>(); }

@@ -1,4 +1,5 @@
 #include "tools/suite/suite_run.hpp"
+#include "base/progress.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +11,13 @@
 
 #include "compare/image/difference.hpp"
 #include "pathtracer/image/image_io.hpp"
+#include "tools/options/job.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/progress_bar.hpp"
+#include "tools/report/comparison_report.hpp"
 #include "tools/report/device_json.hpp"
+#include "tools/report/job_report.hpp"
 #include "tools/report/report_page.hpp"
 #include "tools/suite/gallery.hpp"
 #include "tools/suite/program_hash.hpp"
@@ -39,13 +44,13 @@ std::optional<Json> read_result(const std::filesystem::path& folder, const std::
 }
 
 /// Everything that a cell's result depends on.
-Json key_of(const SuiteCell& cell, const RenderJob& job, const ComparedDevices& devices, const std::string& program) {
-  const compare::Thresholds thresholds = thresholds_for(cell.comparison, cell.render);
+Json key_of(const SuiteCell& cell, const compare::Job& job, const compare::ComparedDevices& devices,
+            const compare::Thresholds& thresholds, const std::string& program) {
   Json rules = {{"tier", compare::name(thresholds.tier)}};
   for (const compare::Rule& rule : thresholds.rules) rules[compare::name(rule.metric)] = {rule.limit, rule.reason};
   return {{"version", TANDEM_VERSION},
           {"program", program},
-          {"job", to_json(summary(cell.render, job))},
+          {"job", to_json(summary(job))},
           {"given", cell.given},
           {"thresholds", rules},
           {"device_a", to_json(devices.a->info())},
@@ -69,30 +74,31 @@ const SuiteRun::OpenDevice& SuiteRun::device(const std::string& name, const Rend
   return devices_.emplace(name, std::move(device)).first->second;
 }
 
-SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report, std::string& page) {
-  RenderJob job = load_job(cell.render);
-  ComparisonOptions options = cell.comparison;
+SuiteResult SuiteRun::try_run(const SuiteCell& cell, compare::Comparison& comparison, std::string& page) {
+  compare::Job job = load_job(cell.render);
+  compare::ComparisonOptions options = comparison_options(cell.comparison, cell.render);
   if (cell.report) options = with_metrics_for_page(options);
-  ComparedDevices devices;
+  compare::ComparedDevices devices;
   const auto open = [&](const std::string& name, rhi::DeviceHandle& handle, pathtracer::ProgramStoreHandle& programs) {
     const OpenDevice& opened = device(name, cell.render);
     handle = opened.handle;
     programs = opened.programs;
   };
-  open(options.a, devices.a, devices.programs_a);
-  open(options.b, devices.b, devices.programs_b);
-  if (options.classify) open(options.arbiter, devices.arbiter, devices.programs_arbiter);
-  const Json key = key_of(cell, job, devices, program_);
+  open(cell.comparison.a, devices.a, devices.programs_a);
+  open(cell.comparison.b, devices.b, devices.programs_b);
+  if (options.classify) open(cell.comparison.arbiter, devices.arbiter, devices.programs_arbiter);
+  const Json key = key_of(cell, job, devices, options.thresholds, program_);
   if (!fresh_)
     if (std::optional<Json> earlier = read_result(folder_, cell_path(cell, ".json"), key))
-      return {.json = std::move(*earlier), .taken_over = true};
-  Comparison comparison = prepare(options, cell.render, std::move(job), std::move(devices));
-  report = compare_devices(comparison);
-  if (cell.report) page = report_page(comparison, report);
-  const std::vector<std::string> reasons = failures(report);
+      return {.json = std::move(*earlier), .reused = true};
+  compare::Session session = prepare(std::move(devices), std::move(job), options);
+  comparison = compare_devices(session, progress_bars());
+  const Json report = to_json(comparison);
+  if (cell.report) page = report_page(session, comparison, json_text(report));
+  const std::vector<std::string>& reasons = comparison.verdict.reasons;
   SuiteResult result{.json = {{"state", reasons.empty() ? "agree" : "differ"},
                               {"reasons", reasons},
-                              {"report", to_json(report)},
+                              {"report", report},
                               {"picture", cell_path(cell, ".png").string()},
                               {"difference", cell_path(cell, "_difference.png").string()},
                               {"key", key}}};
@@ -103,7 +109,7 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, DiffReport& report, std::st
 SuiteResult SuiteRun::run(const SuiteCell& cell) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point started = Clock::now();
-  DiffReport report;
+  compare::Comparison comparison;
   std::string page;
   SuiteResult result;
   const auto fail = [&](const std::string& sentence) {
@@ -114,15 +120,15 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
     result.json = {{"state", "failed"}, {"reasons", {sentence}}, {"report", nullptr}};
   };
   try {
-    result = try_run(cell, report, page);
-  } catch (const Interrupted&) {
+    result = try_run(cell, comparison, page);
+  } catch (const Cancelled&) {
     throw;
   } catch (const std::bad_alloc&) {
-    fail("there is not enough memory for this scene and image size");
+    fail("not enough memory for this scene and image size");
   } catch (const std::exception& error) {
     fail(error.what());
   }
-  if (result.taken_over) return result;
+  if (result.reused) return result;
 
   Json json = {{"name", cell.name},         {"scene", cell.scene},
                {"a", cell.comparison.a},    {"b", cell.comparison.b},
@@ -133,8 +139,8 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
     const auto write = [&](const char* file, const pathtracer::Image& image) {
       pathtracer::write_image(folder_ / result.json.at(file).get<std::string>(), reduced(image, largest_picture), {});
     };
-    write("picture", report.a.image);
-    write("difference", compare::heat_map(report.a.image, report.b.image));
+    write("picture", comparison.a.image);
+    write("difference", compare::heat_map(comparison.a.image, comparison.b.image));
     if (cell.report) {
       const OutputFolder folder(folder_ / cell_path(cell, ""));
       write_text(folder.path() / "index.html", page);
@@ -155,12 +161,13 @@ nlohmann::ordered_json to_json(const std::vector<SuiteResult>& results) {
                {"agree", agree},
                {"differ", results.size() - agree - failed},
                {"failed", failed},
+               {"format", json_format},
                {"version", TANDEM_VERSION},
                {"cells", Json::array()}};
   for (const SuiteResult& result : results) {
     Json cell = result.json;
     cell.erase("key");
-    cell["taken_over"] = result.taken_over;
+    cell["reused"] = result.reused;
     json["cells"].push_back(std::move(cell));
   }
   return json;

@@ -21,7 +21,7 @@ namespace tandem::tools {
 /// key (of all that the result depends on).
 struct SuiteResult {
   nlohmann::ordered_json json;
-  bool taken_over = false;  ///< from an earlier run
+  bool reused = false;  ///< from an earlier run
 
   bool agrees() const { return json.at("state") == "agree"; }
   bool failed() const { return json.at("state") == "failed"; }
@@ -34,7 +34,7 @@ class SuiteRun {
   SuiteRun(std::filesystem::path folder, bool fresh);
 
   /// Takes over what the folder has of the cell, if its key is the same and it did not fail; else compares, and writes
-  /// the pictures, then the result. A device or a scene that fails is a result. Throws Interrupted, and
+  /// the pictures, then the result. A device or a scene that fails is a result. Throws Cancelled, and
   /// Error when a file cannot be written.
   SuiteResult run(const SuiteCell& cell);
 
@@ -46,7 +46,7 @@ class SuiteRun {
   };
 
   const OpenDevice& device(const std::string& name, const RenderOptions& options);
-  SuiteResult try_run(const SuiteCell& cell, DiffReport& report, std::string& page);
+  SuiteResult try_run(const SuiteCell& cell, compare::Comparison& comparison, std::string& page);
 
   std::filesystem::path folder_;
   bool fresh_;

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
+#include "compare/image/flip/flip_errors.hpp"
 #include "pathtracer/image/image.hpp"
 
 /// FLIP: how much an eye sees of a difference when two pictures alternate on a screen. Own implementations of
@@ -13,26 +13,6 @@
 /// Both evaluate linear RGB with the primaries of sRGB and throw as check_pair. A pixel with a NaN or an infinity in
 /// either image has the error 1 and is black in both while its neighbours are evaluated.
 namespace tandem::compare {
-
-/// The error of each pixel, from 0 (no difference is seen) to 1, row by row from the top left.
-struct FlipErrors {
-  std::uint32_t width = 0;
-  std::uint32_t height = 0;
-  std::vector<float> errors;  ///< width * height
-  double mean = 0.0;
-  double largest = 0.0;
-};
-
-/// Where the viewer sits: pixels per degree of the visual angle. The default is that of [LDR]: 0.7 m away from a screen
-/// 0.7 m wide with 3840 pixels in a row, 67.02.
-struct ViewingConditions {
-  double pixels_per_degree = pixels_per_degree_at(0.7, 0.7, 3840.0);
-
-  /// @param distance and `width` of the screen in metres
-  static constexpr double pixels_per_degree_at(double distance, double width, double pixels) {
-    return distance * (pixels / width) * (3.14159265358979323846 / 180.0);
-  }
-};
 
 /// [LDR] of the pictures that the images show without tone mapping: channels are clamped to [0, 1]. Symmetric.
 FlipErrors flip(const pathtracer::Image& a, const pathtracer::Image& b, const ViewingConditions& viewing = {});

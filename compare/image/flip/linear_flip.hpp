@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "compare/image/flip/flip.hpp"
+#include "compare/image/flip/flip_errors.hpp"
+#include "pathtracer/image/image.hpp"
 
 /// The part that LDR and HDR share.
 namespace tandem::compare {

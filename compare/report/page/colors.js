@@ -6,19 +6,19 @@ const unclassed = "not classed";
 const classTable = {
   "mismatch": {
     color: "#ff3b30",
-    why: "None of the reasons below: one of the devices is wrong. These are what to look at.",
+    why: "None of the reasons below: one of the devices is wrong. Look at these first.",
   },
   "coincident geometry": {
     color: "#d891c0",
-    why: "Two primitives lie at the same distance, and each device met another one of them. The scene leaves it open.",
+    why: "Two primitives lie at the same distance, and the devices report different ones. The scene leaves the choice open.",
   },
   "flipped decision": {
     color: "#f0a020",
-    why: "A random choice lay within rounding of its threshold and went either way; from there on the paths differ. Harmless.",
+    why: "A random choice lies within rounding of its threshold, and the devices decide differently; then the paths diverge. Harmless.",
   },
   "grazing visibility": {
     color: "#f4e84a",
-    why: "A shadow ray just grazes what is, or is not, in its way. Harmless.",
+    why: "A shadow ray grazes an occluder within rounding. Harmless.",
   },
   "edge or vertex tie": {
     color: "#2fc28d",
@@ -26,11 +26,11 @@ const classTable = {
   },
   "rounding": {
     color: "#6db9f2",
-    why: "The last digits of a value differ, and nothing was decided by it. Harmless.",
+    why: "The last digits of a value differ, but decide nothing. Harmless.",
   },
   [unclassed]: {
     color: "#b9bec6",
-    why: "Their paths were not compared: --classify does it, for as many pixels as it is told.",
+    why: "The paths of these pixels were not compared; --classify compares up to --classify-pixels of them.",
   },
 };
 

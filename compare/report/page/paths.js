@@ -96,7 +96,7 @@ function showPaths({scene, data, pixels, names, recorded, found}, pixel) {
     children.push(element("p", {className: "problem"}, `The picture of ${names[device]} is not the sum of the paths that it traces here.`));
   const divergences = found.divergences.filter(isHere);
   if (divergences.length > 0) {
-    children.push(element("h3", {}, "Where they part"), element("ul", {className: "divergences"},
+    children.push(element("h3", {}, "Where they diverge"), element("ul", {className: "divergences"},
       ...divergences.map((divergence) => element("li", {}, classBadge(divergence.class), ` sample ${divergence.sample}, segment ${divergence.segment}: ${divergence.sentence}`))));
   }
   const paths = recorded.filter(isHere);

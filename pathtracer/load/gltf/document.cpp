@@ -108,7 +108,7 @@ void parse(GltfDocument& document, const std::filesystem::path& path, std::span<
   // What it only complains about may be right: it calls some optional properties missing.
   if (parsed) return;
   error = error.substr(0, error.find('\n'));
-  throw Error(fmt::format("{}: {}", document.path, error.empty() ? "this is no glTF 2.0" : error));
+  throw Error(fmt::format("{}: {}", document.path, error.empty() ? "not a glTF 2.0 file" : error));
 }
 
 void add_names(std::set<std::string>& names, const tinygltf::ExtensionMap& extensions) {
@@ -166,7 +166,7 @@ void gltf_warn(GltfDocument& document, std::string_view sentence) {
 float gltf_number(GltfDocument& document, double value, double low, double high, std::string_view owner,
                   std::string_view property) {
   if (!std::isfinite(static_cast<float>(value)))
-    throw gltf_error(document, owner, fmt::format("{} is no finite number", property));
+    throw gltf_error(document, owner, fmt::format("{} is not a finite number", property));
   if (value >= low && value <= high) return static_cast<float>(value);
   const double clamped = std::clamp(value, low, high);
   gltf_warn(document,

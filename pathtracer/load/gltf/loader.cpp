@@ -18,9 +18,9 @@
 namespace tandem::pathtracer {
 namespace {
 
-/// Where a ray meets a triangle is found from products of three coordinates, which must be floats.
+/// The intersection of a ray with a triangle needs products of three coordinates, which must be finite floats.
 constexpr double largest_coordinate = 1e12;
-/// So many vertices the triangles of a scene can name.
+/// The most vertices that the indices of triangles can address.
 constexpr std::size_t most_vertices = std::numeric_limits<std::uint32_t>::max();
 
 struct Reading {

@@ -34,7 +34,8 @@ float member(Reading& reading, const tinygltf::Value& extension, const std::stri
              double high) {
   const tinygltf::Value* value = gltf_member(extension, property);
   if (value == nullptr) return static_cast<float>(absent);
-  if (!value->IsNumber()) throw gltf_error(reading.document, reading.owner, fmt::format("{} is no number", property));
+  if (!value->IsNumber())
+    throw gltf_error(reading.document, reading.owner, fmt::format("{} is not a number", property));
   return number(reading, value->GetNumberAsDouble(), high, property);
 }
 
@@ -116,7 +117,7 @@ void read_base(Reading& reading, const tinygltf::Material& source) {
   if (source.alphaMode == "OPAQUE" || source.alphaMode.empty()) return;
   if (source.alphaMode != "MASK" && source.alphaMode != "BLEND")
     throw gltf_error(reading.document, reading.owner,
-                     fmt::format("the alpha mode '{}' is none of OPAQUE, MASK and BLEND", source.alphaMode));
+                     fmt::format("the alpha mode '{}' is not OPAQUE, MASK or BLEND", source.alphaMode));
   reading.result.has_alpha = true;
   material.opacity = number(reading, base.baseColorFactor[3], 1, "baseColorFactor");
   if (material.base_color_texture != no_texture)

@@ -82,7 +82,7 @@ void read_texture_coordinates(GltfDocument& document, const tinygltf::Primitive&
     primitive.texture_coordinates.push_back(finite ? coordinate : glm::vec2(0));
   }
   if (!all_finite)
-    gltf_warn(document, fmt::format("{} has texture coordinates that are no finite numbers", primitive.name));
+    gltf_warn(document, fmt::format("{} has texture coordinates that are not finite numbers", primitive.name));
 }
 
 void read_color(GltfDocument& document, const tinygltf::Primitive& source, GltfPrimitive& primitive) {
@@ -106,7 +106,7 @@ std::optional<GltfPrimitive> read_primitive(GltfDocument& document, const std::v
                                             const tinygltf::Primitive& source, std::string name) {
   const bool has_triangles = source.mode >= TINYGLTF_MODE_TRIANGLES && source.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
   if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-    throw gltf_error(document, name, fmt::format("{} is no mode of primitives", source.mode));
+    throw gltf_error(document, name, fmt::format("{} is not a primitive mode", source.mode));
   if (!has_triangles) {
     gltf_warn(document, "points and lines are not drawn");
     return std::nullopt;

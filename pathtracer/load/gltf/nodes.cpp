@@ -28,7 +28,7 @@ glm::dmat4 local_transform(const GltfDocument& document, const tinygltf::Node& n
     transform[3] = glm::dvec4(glm::make_vec3(node.translation.data()), 1);
   if (has_numbers(document, node.rotation, 4, owner, "rotations")) {
     const glm::dquat rotation(node.rotation[3], node.rotation[0], node.rotation[1], node.rotation[2]);
-    if (!(glm::length(rotation) > 0)) throw gltf_error(document, owner, "its rotation is no quaternion of length 1");
+    if (!(glm::length(rotation) > 0)) throw gltf_error(document, owner, "its rotation is not a unit quaternion");
     transform *= glm::mat4_cast(glm::normalize(rotation));
   }
   if (has_numbers(document, node.scale, 3, owner, "scales"))
@@ -127,13 +127,13 @@ PunctualLight read_gltf_light(GltfDocument& document, int index, const GltfNode&
   } else if (source.type == "directional") {
     light.kind = LightKind::directional;
   } else {
-    throw gltf_error(document, name, fmt::format("the type '{}' is none of point, spot and directional", source.type));
+    throw gltf_error(document, name, fmt::format("the type '{}' is not point, spot or directional", source.type));
   }
   light.position = glm::vec3(node.transform[3]);
   light.direction = glm::vec3(direction(document, node, {0, 0, -1}));
   light.radiance = glm::vec3(gltf_number(document, source.intensity, 0, unbounded, name, "intensity"));
   if (!source.color.empty()) {
-    if (source.color.size() != 3) throw gltf_error(document, name, "its color has not 3 numbers");
+    if (source.color.size() != 3) throw gltf_error(document, name, "its color does not have 3 numbers");
     for (int i = 0; i < 3; ++i)
       light.radiance[i] *=
           gltf_number(document, source.color[static_cast<std::size_t>(i)], 0, unbounded, name, "color");

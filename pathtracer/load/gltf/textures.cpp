@@ -33,7 +33,7 @@ TextureAddress address(const GltfDocument& document, int wrap, std::string_view 
     case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return TextureAddress::mirror;
     default:
-      throw gltf_error(document, owner, fmt::format("{} is no way to wrap a texture", wrap));
+      throw gltf_error(document, owner, fmt::format("{} is not a texture wrap mode", wrap));
   }
 }
 
@@ -52,7 +52,7 @@ std::array<double, 2> pair(GltfDocument& document, const tinygltf::Value& transf
   const tinygltf::Value* value = gltf_member(transform, member);
   if (value == nullptr) return result;
   if (value->ArrayLen() != 2 || !value->Get(0).IsNumber() || !value->Get(1).IsNumber())
-    throw gltf_error(document, owner, fmt::format("{} of KHR_texture_transform is no pair of numbers", member));
+    throw gltf_error(document, owner, fmt::format("{} of KHR_texture_transform is not a pair of numbers", member));
   for (int i = 0; i < 2; ++i)
     result[static_cast<std::size_t>(i)] =
         double{gltf_number(document, value->Get(i).GetNumberAsDouble(), -1e9, 1e9, owner, member)};
@@ -84,7 +84,7 @@ std::uint32_t add_gltf_texture(GltfDocument& document, Scene& scene, GltfTexture
   const tinygltf::Texture& source = gltf_at(document, document.model.textures, index, "texture", owner);
   const std::string name = gltf_name("texture", static_cast<std::size_t>(index), source.name);
   if (source.source < 0) {
-    gltf_warn(document, fmt::format("{} has no image in a format that is read, so it has no effect", name));
+    gltf_warn(document, fmt::format("{} has no image in a supported format and has no effect", name));
     return no_texture;
   }
   Texture texture;

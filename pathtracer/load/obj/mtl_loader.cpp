@@ -39,7 +39,7 @@ glm::vec3 checked_color(const Reading& reading, const Statement& statement) {
   }
   if (count == 1) return glm::vec3(numbers[0]);
   if (count != 3)
-    throw reading.text->error(fmt::format("{} takes one or three numbers, here are {}", statement.keyword, count));
+    throw reading.text->error(fmt::format("{} takes one or three numbers, not {}", statement.keyword, count));
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -58,7 +58,7 @@ int checked_illum(const Reading& reading, const Statement& statement) {
   const std::string_view word = take_word(rest);
   int value = 0;
   if (!parse_integer(word, value) || value < 0 || value > 10)
-    throw reading.text->error(fmt::format("illum of '{}' is none of the models 0 to 10", word));
+    throw reading.text->error(fmt::format("illum of '{}' is not one of the models 0 to 10", word));
   return value;
 }
 

@@ -27,7 +27,7 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Of a triangle before the first usemtl, until the end of the file.
 constexpr std::uint32_t no_material = triangle_smooth - 1;
 constexpr glm::vec3 grey{0.5f};
-/// Where a ray meets a triangle is found from products of three coordinates, which must be floats.
+/// The intersection of a ray with a triangle needs products of three coordinates, which must be finite floats.
 constexpr double largest_coordinate = 1e12;
 
 /// A triangle whose positions and normals are still numbered as in the file, from 0.
@@ -128,7 +128,7 @@ void check_position(const Reading& reading, const Statement& statement) {
     double value = 0;
     if (word.empty()) throw reading.text->error("a vertex has fewer than three coordinates");
     if (!parse_number(word, value) || !std::isfinite(static_cast<float>(value)))
-      throw reading.text->error(fmt::format("the vertex coordinate '{}' is no finite number", word));
+      throw reading.text->error(fmt::format("the vertex coordinate '{}' is not a finite number", word));
     if (std::abs(value) > largest_coordinate)
       throw reading.text->error(fmt::format("the vertex coordinate '{}' is beyond {:g}, the farthest that rays reach",
                                             word, largest_coordinate));
@@ -161,7 +161,7 @@ std::string checked_face(const Reading& reading, std::string_view text) {
       const bool may_be_empty = part == 1 && slash < corner.size();
       int value = 0;
       if (part > 2 || (!(index.empty() && may_be_empty) && (!parse_integer(index, value) || value == 0)))
-        throw reading.text->error(fmt::format("'{}' is no corner of a face", word));
+        throw reading.text->error(fmt::format("'{}' is not a corner of a face", word));
       if (slash == corner.size()) break;
       corner.remove_prefix(slash + 1);
     }
@@ -349,7 +349,7 @@ Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
     warn(fmt::format(
         "{} triangles with a texture lack texture coordinates, so they have those of its lower left corner", lacking));
   if (!reading.scene.textures.empty() && reading.unusable_texture_coordinates > 0)
-    warn(fmt::format("{} texture coordinates are no finite numbers, and count as 0",
+    warn(fmt::format("{} texture coordinates are not finite numbers, and count as 0",
                      reading.unusable_texture_coordinates));
   return std::move(reading.scene);
 }

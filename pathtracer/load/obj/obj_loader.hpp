@@ -14,7 +14,7 @@ struct ObjOptions {
 
 /// Reads a Wavefront OBJ file, the MTL files that it names and their textures (docs/guide/scenes.md says what is
 /// understood and how). Throws Error, naming file and line, for what cannot be meant: a missing or truncated file, a
-/// missing MTL file or texture, a coordinate that is no finite number, an index out of range, no triangles, a
+/// missing MTL file or texture, a coordinate that is not a finite number, an index out of range, no triangles, a
 /// dielectric without index of refraction. What is merely ignored becomes a warning of the scene.
 Scene load_obj(const std::filesystem::path& path, const ObjOptions& options = {});
 

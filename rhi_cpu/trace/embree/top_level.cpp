@@ -3,12 +3,10 @@
 #include <cstring>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "rhi/error.hpp"
 #include "rhi_cpu/trace/affine_inverse.hpp"
 #include "rhi_cpu/trace/embree/acceleration_structure.hpp"
 #include "rhi_cpu/trace/embree/scene.hpp"
+#include "rhi_cpu/trace/instance_input.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -54,28 +52,14 @@ bool is_identity(const float (&m)[3][4]) {
   return true;
 }
 
-bool is_opaque(const InstanceTraits& instance) {
-  if (rhi::has(instance.flags, rhi::InstanceFlags::force_opaque)) return true;
-  return !rhi::has(instance.flags, rhi::InstanceFlags::force_no_opaque) && instance.bottom_level->all_opaque;
-}
-
-void read_instance(const rhi::InstanceDesc& desc, std::size_t index, const BottomLevelLookup& lookup,
-                   std::string_view label, kernel::Instance& instance, InstanceTraits& traits) {
-  static_assert(sizeof(instance.object_to_world) == sizeof(desc.object_to_world));
-  std::memcpy(instance.object_to_world, desc.object_to_world, sizeof(desc.object_to_world));
-  instance.custom_index = desc.custom_index;
-  instance.sbt_offset = desc.sbt_offset;
-  if (desc.blas_address == 0) return;
-  const BottomLevel* bottom_level = lookup(desc.blas_address);
-  if (bottom_level == nullptr) {
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, label,
-                     fmt::format("instance {} refers to the address {:#x}, where no bottom level is built", index,
-                                 desc.blas_address));
-  }
-  if (!invert(instance.object_to_world, instance.world_to_object)) return;
-  traits.bottom_level = bottom_level->scene();
-  traits.flags = static_cast<rhi::InstanceFlags>(desc.flags);
-  traits.mask = desc.mask;
+/// The instance stays inactive, with a bottom level of null, when Embree cannot have its transform.
+void set_up_instance(const rhi::InstanceDesc& desc, std::size_t index, const BottomLevelLookup& lookup,
+                     std::string_view label, kernel::Instance& instance, InstanceTraits& traits) {
+  const InstanceInput input = read_instance(desc);
+  instance = input.instance;
+  const BottomLevel* bottom_level = find_bottom_level(input, index, lookup, label);
+  if (bottom_level == nullptr || !invert(instance.object_to_world, instance.world_to_object)) return;
+  traits = {.bottom_level = bottom_level->scene(), .flags = input.flags, .mask = input.mask};
 }
 
 void attach_instance(const EmbreeDevice& device, RTCScene scene, std::uint32_t index, const kernel::Instance& instance,
@@ -131,11 +115,12 @@ TopLevel TopLevel::build(const EmbreeDevice& device, std::span<const rhi::Instan
   std::vector<std::uint32_t> of_triangles, of_boxes;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     InstanceTraits& traits = result->traits[i];
-    read_instance(instances[i], i, lookup, label, result->instance_storage[i], traits);
+    set_up_instance(instances[i], i, lookup, label, result->instance_storage[i], traits);
     if (traits.bottom_level == nullptr) continue;
     (traits.bottom_level->holds_boxes ? of_boxes : of_triangles).push_back(i);
     result->coordinate_limit = std::min(result->coordinate_limit, coordinate_limit_of(result->instance_storage[i]));
-    if (!traits.bottom_level->holds_boxes) result->all_opaque = result->all_opaque && is_opaque(traits);
+    if (!traits.bottom_level->holds_boxes)
+      result->all_opaque = result->all_opaque && is_opaque(traits.flags, traits.bottom_level->all_opaque);
   }
   result->has_boxes = !of_boxes.empty();
   // An update builds a top level anew, so only the speed of the build counts.

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+// compare/geometry/bounding_volumes.cpp splits the tree of the probes' reference tracer in the same way. The two share
+// no code on purpose: the reference judges this device too, and a fault that they had in common would stay unseen.
+
 namespace tandem::cpu::exact {
 namespace {
 

@@ -2,12 +2,10 @@
 #include <cstring>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "rhi/error.hpp"
 #include "rhi_cpu/trace/affine_inverse.hpp"
 #include "rhi_cpu/trace/exact/acceleration_structure.hpp"
 #include "rhi_cpu/trace/exact/scene.hpp"
+#include "rhi_cpu/trace/instance_input.hpp"
 
 namespace tandem::cpu::exact {
 namespace {
@@ -21,33 +19,20 @@ bool is_finite(const float (&m)[3][4]) {
   return true;
 }
 
-void read_instance(const rhi::InstanceDesc& desc, std::size_t index, const BottomLevelLookup& lookup,
-                   std::string_view label, kernel::Instance& instance, InstanceTraits& traits) {
-  static_assert(sizeof(instance.object_to_world) == sizeof(desc.object_to_world));
-  std::memcpy(instance.object_to_world, desc.object_to_world, sizeof(desc.object_to_world));
-  instance.custom_index = desc.custom_index;
-  instance.sbt_offset = desc.sbt_offset;
-  // Vulkan, "Inactive Primitives and Instances".
-  if (desc.blas_address == 0) return;
-  const BottomLevel* bottom_level = lookup(desc.blas_address);
-  if (bottom_level == nullptr) {
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, label,
-                     fmt::format("instance {} refers to the address {:#x}, where no bottom level is built", index,
-                                 desc.blas_address));
-  }
-  if (!is_finite(instance.object_to_world)) return;
+/// The instance stays inactive, with a bottom level of null, when its transform has no inverse.
+void set_up_instance(const rhi::InstanceDesc& desc, std::size_t index, const BottomLevelLookup& lookup,
+                     std::string_view label, kernel::Instance& instance, InstanceTraits& traits) {
+  const InstanceInput input = read_instance(desc);
+  instance = input.instance;
+  const BottomLevel* bottom_level = find_bottom_level(input, index, lookup, label);
+  if (bottom_level == nullptr || !is_finite(instance.object_to_world)) return;
   traits.transform = make_transform(instance.object_to_world);
   if (traits.transform.determinant_sign == 0) return;
   static_assert(sizeof(instance.world_to_object) == sizeof(AffineInverse::rows));
   std::memcpy(instance.world_to_object, inverse_of(instance.object_to_world).rows, sizeof(instance.world_to_object));
   traits.bottom_level = bottom_level->scene();
-  traits.flags = static_cast<rhi::InstanceFlags>(desc.flags);
-  traits.mask = desc.mask;
-}
-
-bool is_opaque(const InstanceTraits& instance) {
-  if (rhi::has(instance.flags, rhi::InstanceFlags::force_opaque)) return true;
-  return !rhi::has(instance.flags, rhi::InstanceFlags::force_no_opaque) && instance.bottom_level->all_opaque;
+  traits.flags = input.flags;
+  traits.mask = input.mask;
 }
 
 }  // namespace
@@ -74,9 +59,9 @@ TopLevel TopLevel::build(std::span<const rhi::InstanceDesc> instances, const Bot
   std::vector<Bounds> bounds;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     InstanceTraits& traits = result->traits[i];
-    read_instance(instances[i], i, lookup, label, result->instance_storage[i], traits);
+    set_up_instance(instances[i], i, lookup, label, result->instance_storage[i], traits);
     if (traits.bottom_level == nullptr || traits.bottom_level->primitives.empty()) continue;
-    result->all_opaque = result->all_opaque && is_opaque(traits);
+    result->all_opaque = result->all_opaque && is_opaque(traits.flags, traits.bottom_level->all_opaque);
     result->has_boxes = result->has_boxes || traits.bottom_level->has_boxes;
     result->active_instances.push_back(i);
     bounds.push_back(to_world(traits.transform, traits.bottom_level->bvh.bounds()));

@@ -70,7 +70,8 @@ TracedRay upwards(float x, float y, RayKind kind = RayKind::closest) {
   return {.origin = {x, y, 0}, .t_max = kind == RayKind::closest ? 1e30f : 4.0f, .direction = {0, 0, 1}, .kind = kind};
 }
 
-compare::Judgement judge(const pathtracer::Scene& scene, const TracedRay& ray, std::uint32_t a, std::uint32_t b) {
+compare::Arbitration arbitrated(const pathtracer::Scene& scene, const TracedRay& ray, std::uint32_t a,
+                                std::uint32_t b) {
   const Dispute dispute{.ray = ray, .answer_a = a, .answer_b = b};
   return compare::arbitrate({&dispute, 1}, scene,
                             [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); })[0];
@@ -80,11 +81,11 @@ constexpr std::uint32_t none = pathtracer::no_primitive;
 
 TEST_CASE("well inside a triangle the device that sees it is right") {
   const pathtracer::Scene scene = plates({1, 3});
-  const compare::Judgement judgement = judge(scene, upwards(0.5f, 0.5f), 0, 1);
-  CHECK(judgement.ruling == Ruling::a_right);
-  CHECK(judgement.exact_answer == 0);
-  CHECK(judge(scene, upwards(0.5f, 0.5f), none, 0).ruling == Ruling::b_right);
-  CHECK(judge(scene, upwards(0.5f, 0.5f), none, 1).ruling == Ruling::both_wrong);
+  const compare::Arbitration arbitration = arbitrated(scene, upwards(0.5f, 0.5f), 0, 1);
+  CHECK(arbitration.ruling == Ruling::a_right);
+  CHECK(arbitration.exact_answer == 0);
+  CHECK(arbitrated(scene, upwards(0.5f, 0.5f), none, 0).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, upwards(0.5f, 0.5f), none, 1).ruling == Ruling::both_wrong);
 }
 
 TEST_CASE("a sphere is right where the ray meets it, and a tie where it is all but touched") {
@@ -93,36 +94,36 @@ TEST_CASE("a sphere is right where the ray meets it, and a tie where it is all b
   // Above the first plate; the second sphere lies beside both.
   TracedRay ray = upwards(0.5f, 0.5f);
   ray.origin.z = 1.25f;
-  CHECK(judge(scene, ray, 2, 1).ruling == Ruling::a_right);
-  CHECK(judge(scene, ray, 1, 2).ruling == Ruling::b_right);
-  CHECK(judge(scene, ray, 3, none).ruling == Ruling::both_wrong);
-  CHECK(judge(scene, ray, 2, 1).exact_answer == 2);
-  CHECK(judge(scene, upwards(0.5f, 0.5f), 2, 0).ruling == Ruling::b_right);
-  CHECK(judge(scene, upwards(1.5f, 1.5f), 3, none).ruling == Ruling::a_right);
+  CHECK(arbitrated(scene, ray, 2, 1).ruling == Ruling::a_right);
+  CHECK(arbitrated(scene, ray, 1, 2).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, ray, 3, none).ruling == Ruling::both_wrong);
+  CHECK(arbitrated(scene, ray, 2, 1).exact_answer == 2);
+  CHECK(arbitrated(scene, upwards(0.5f, 0.5f), 2, 0).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, upwards(1.5f, 1.5f), 3, none).ruling == Ruling::a_right);
   // A rim that the ray all but touches, from inside and from outside.
-  CHECK(judge(scene, upwards(1.75f - 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
-  CHECK(judge(scene, upwards(1.75f + 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
-  CHECK(judge(scene, upwards(1.75f + 1e-3f, 1.5f), none, 3).ruling == Ruling::a_right);
+  CHECK(arbitrated(scene, upwards(1.75f - 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(1.75f + 2e-7f, 1.5f), none, 3).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(1.75f + 1e-3f, 1.5f), none, 3).ruling == Ruling::a_right);
   pathtracer::Scene only;
   only.spheres = {{.centre = {0, 0, 5}, .radius = 1}};
-  CHECK(judge(only, upwards(0, 0), 0, none).ruling == Ruling::a_right);
+  CHECK(arbitrated(only, upwards(0, 0), 0, none).ruling == Ruling::a_right);
 }
 
 TEST_CASE("at the border of a triangle, what lies behind it is as right") {
   const pathtracer::Scene scene = plates({1, 3});
   // 2e-7 from the leg x = 0: two units in the last place of a coordinate of 2.
-  CHECK(judge(scene, upwards(2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
-  CHECK(judge(scene, upwards(-2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(-2e-7f, 0.5f), 0, none).ruling == Ruling::tie);
   // A thousandth is no rounding.
-  CHECK(judge(scene, upwards(1e-3f, 0.5f), 0, none).ruling == Ruling::a_right);
-  CHECK(judge(scene, upwards(-1e-3f, 0.5f), 0, none).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, upwards(1e-3f, 0.5f), 0, none).ruling == Ruling::a_right);
+  CHECK(arbitrated(scene, upwards(-1e-3f, 0.5f), 0, none).ruling == Ruling::b_right);
 }
 
 TEST_CASE("of two triangles in one place either is right, of two that lie apart only the nearer") {
   const float next = std::nextafter(1.0f, 2.0f);
-  CHECK(judge(plates({1, 1}), upwards(0.5f, 0.5f), 0, 1).ruling == Ruling::tie);
-  CHECK(judge(plates({1, next}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
-  CHECK(judge(plates({1, 1.001f}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::b_right);
+  CHECK(arbitrated(plates({1, 1}), upwards(0.5f, 0.5f), 0, 1).ruling == Ruling::tie);
+  CHECK(arbitrated(plates({1, next}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(arbitrated(plates({1, 1.001f}), upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::b_right);
 }
 
 TEST_CASE("a triangle seen edge-on may be taken for hit by a ray that touches it, and by no other") {
@@ -131,22 +132,22 @@ TEST_CASE("a triangle seen edge-on may be taken for hit by a ray that touches it
   for (const glm::vec3& corner : {glm::vec3(0.5f, 0.2f, 1), glm::vec3(0.5f, 0.2f, 2), glm::vec3(0.5f, 0.9f, 1.5f)})
     scene.positions.push_back(corner);  // in the plane x = 0.5, in front of the plate
   scene.triangles.push_back({.vertices = {first, first + 1, first + 2}, .material = 0});
-  CHECK(judge(scene, upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
-  CHECK(judge(scene, upwards(0.5f + 1e-6f, 0.5f), 1, 0).ruling == Ruling::tie);
-  CHECK(judge(scene, upwards(0.501f, 0.5f), 1, 0).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, upwards(0.5f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(0.5f + 1e-6f, 0.5f), 1, 0).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(0.501f, 0.5f), 1, 0).ruling == Ruling::b_right);
 }
 
-TEST_CASE("shadow rays are judged by whether anything is in the way") {
+TEST_CASE("shadow rays are arbitrated by whether anything is in the way") {
   const pathtracer::Scene scene = plates({1});
-  CHECK(judge(scene, upwards(0.5f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::b_right);
-  CHECK(judge(scene, upwards(5, 5, RayKind::occlusion), 0, 1).ruling == Ruling::a_right);
-  CHECK(judge(scene, upwards(-2e-7f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, upwards(0.5f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, upwards(5, 5, RayKind::occlusion), 0, 1).ruling == Ruling::a_right);
+  CHECK(arbitrated(scene, upwards(-2e-7f, 0.5f, RayKind::occlusion), 0, 1).ruling == Ruling::tie);
   // The plate lies at the very end of the ray.
   TracedRay ray = upwards(0.5f, 0.5f, RayKind::occlusion);
   ray.t_max = std::nextafter(1.0f, 2.0f);
-  CHECK(judge(scene, ray, 0, 1).ruling == Ruling::tie);
+  CHECK(arbitrated(scene, ray, 0, 1).ruling == Ruling::tie);
   ray.t_max = 1.001f;
-  CHECK(judge(scene, ray, 0, 1).ruling == Ruling::b_right);
+  CHECK(arbitrated(scene, ray, 0, 1).ruling == Ruling::b_right);
 }
 
 }  // namespace

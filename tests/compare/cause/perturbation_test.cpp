@@ -52,7 +52,7 @@ TEST_CASE("perturbed states are near the state, on all sides, and always the sam
     above += throughput.x > 0.5f ? 1 : 0;
     below += throughput.x < 0.5f ? 1 : 0;
     moved += each != state ? 1 : 0;
-    CHECK(each.words[word::depth] == state.words[word::depth]);
+    CHECK(each.words[word::segment_depth] == state.words[word::segment_depth]);
     CHECK(each.words[15] == state.words[15]);
   }
   CHECK(moved == int{variation_count});

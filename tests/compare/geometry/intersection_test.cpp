@@ -100,12 +100,11 @@ TEST_CASE("The hierarchy of boxes finds every primitive that a ray meets") {
                              .direction = glm::dvec3(each.ray.direction),
                              .magnitude = mapped_magnitude({}, glm::dvec3(each.ray.origin))};
     std::vector<bool> visited(all.size());
-    volumes.traverse({.origin = ray.origin, .direction = ray.direction, .magnitude = ray.magnitude, .ulp = 32},
-                     [&](std::uint32_t primitive) {
-                       CHECK_FALSE(visited[primitive]);
-                       visited[primitive] = true;
-                       return std::numeric_limits<double>::infinity();
-                     });
+    volumes.traverse(ray, [&](std::uint32_t primitive) {
+      CHECK_FALSE(visited[primitive]);
+      visited[primitive] = true;
+      return std::numeric_limits<double>::infinity();
+    });
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto met = meet(ray, all[i]);
       if (!met || met->t_high < 0) continue;

@@ -31,7 +31,7 @@ TEST_CASE("a device that stands alone against a majority of equal bits is outvot
   CHECK(result.unanimous == 1);
   CHECK(result.decided == 5);
   CHECK(result.within_tolerance == 0);
-  CHECK(result.tied == 0);
+  CHECK(result.undecided == 0);
   REQUIRE(result.devices.size() == 3);
   CHECK(result.devices[0].outvoted == 1);
   CHECK(result.devices[0].beyond_tolerance == 1);
@@ -51,7 +51,7 @@ TEST_CASE("with rounding everywhere, the vote is taken within tolerance") {
   CHECK(result.devices[1].beyond_tolerance == 1);
   CHECK(result.devices[2].beyond_tolerance == 1);
   // A stricter tolerance leaves three opinions each.
-  CHECK(vote(images({{1, 1.0001f, 0.9999f}}), 1e-6).tied == 1);
+  CHECK(vote(images({{1, 1.0001f, 0.9999f}}), 1e-6).undecided == 1);
 }
 
 TEST_CASE("closeness is no chain: the ends may be apart") {
@@ -65,16 +65,16 @@ TEST_CASE("closeness is no chain: the ends may be apart") {
 TEST_CASE("ties are counted by who stands with whom") {
   // A line each: two against two, twice; all alone; two against two otherwise.
   const Vote result = vote(images({{1, 1, 2, 2}, {3, 3, 4, 4.00001f}, {1, 2, 3, 4}, {1, 2, 2, 1}}));
-  CHECK(result.tied == 4);
+  CHECK(result.undecided == 4);
   CHECK(result.decided == 0);
-  REQUIRE(result.ties.size() == 3);
-  CHECK(result.ties[0].pixels == 2);
-  CHECK(result.ties[0].sides == std::vector<DeviceIndices>{{0, 1}, {2, 3}});
-  CHECK(result.ties[0].first == glm::uvec2(0, 0));
-  CHECK(result.ties[1].pixels == 1);
-  CHECK(result.ties[2].pixels == 1);
-  CHECK(result.ties[1].sides == std::vector<DeviceIndices>{{0}, {1}, {2}, {3}});
-  CHECK(result.ties[2].sides == std::vector<DeviceIndices>{{0, 3}, {1, 2}});
+  REQUIRE(result.splits.size() == 3);
+  CHECK(result.splits[0].pixels == 2);
+  CHECK(result.splits[0].sides == std::vector<DeviceIndices>{{0, 1}, {2, 3}});
+  CHECK(result.splits[0].first == glm::uvec2(0, 0));
+  CHECK(result.splits[1].pixels == 1);
+  CHECK(result.splits[2].pixels == 1);
+  CHECK(result.splits[1].sides == std::vector<DeviceIndices>{{0}, {1}, {2}, {3}});
+  CHECK(result.splits[2].sides == std::vector<DeviceIndices>{{0, 3}, {1, 2}});
   for (const DeviceVotes& device : result.devices) CHECK(device.outvoted == 0);
 }
 
@@ -84,7 +84,7 @@ TEST_CASE("a NaN is close to nothing but its own bits") {
   CHECK(result.decided == 2);
   CHECK(result.devices[2].outvoted == 2);
   CHECK(result.devices[2].beyond_tolerance == 2);
-  CHECK(result.tied == 1);
+  CHECK(result.undecided == 1);
 }
 
 TEST_CASE("every pixel is counted once") {
@@ -95,10 +95,10 @@ TEST_CASE("every pixel is counted once") {
   CHECK(result.unanimous == 4);
   // Three alike and one not: 4 places, 4 values, 3 others.
   CHECK(result.decided == 48);
-  CHECK(result.tied == 256 - 4 - 48);
-  std::uint64_t in_ties = 0;
-  for (const Tie& tie : result.ties) in_ties += tie.pixels;
-  CHECK(in_ties == result.tied);
+  CHECK(result.undecided == 256 - 4 - 48);
+  std::uint64_t in_splits = 0;
+  for (const SplitVote& split : result.splits) in_splits += split.pixels;
+  CHECK(in_splits == result.undecided);
   for (const DeviceVotes& device : result.devices) CHECK(device.outvoted == 12);
 }
 

@@ -40,8 +40,8 @@ struct Asked {
     for (const ProbeRay& ray : rays) hits.push_back(reference.hits(trial, instances, ray));
   }
 
-  AnswerJudgement judged(std::size_t ray, const ProbeAnswer& b) const {
-    return judge(trial, instances, rays[ray], hits[ray], answers[ray], b);
+  AnswerCheck check(std::size_t ray, const ProbeAnswer& b) const {
+    return check_answers(trial, instances, rays[ray], hits[ray], answers[ray], b);
   }
 
   Trial trial;
@@ -65,9 +65,9 @@ std::size_t mismatches(const char* name, const std::function<void(Trial&, std::v
   std::size_t count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!differ(asked.trial, asked.answers[i], answers[i])) continue;
-    const AnswerJudgement judgement = asked.judged(i, answers[i]);
-    if (judgement.kind != DifferenceClass::mismatch) continue;
-    CHECK(judgement.ruling == Ruling::a_right);
+    const AnswerCheck check = asked.check(i, answers[i]);
+    if (check.kind != DifferenceClass::mismatch) continue;
+    CHECK(check.ruling == Ruling::a_right);
     ++count;
   }
   return count;
@@ -80,7 +80,7 @@ TEST_CASE("A field that is off is named, and one that is a unit in the last plac
   for (const char* name : {"plain", "turned instance", "mirrored instance", "sheared instance"}) {
     CAPTURE(std::string(name));
     const Asked asked(scene, trial_named(name), 300);
-    std::size_t judged = 0;
+    std::size_t checked = 0;
     for (std::size_t i = 0; i < asked.rays.size(); ++i) {
       // Of a ray that passes an edge more than one answer is right.
       if (asked.hits[i].size() != 1 || !asked.hits[i].front().counts) continue;
@@ -96,7 +96,7 @@ TEST_CASE("A field that is off is named, and one that is a unit in the last plac
           ProbeAnswer rounded = asked.answers[i];
           const float value = std::bit_cast<float>(bits);
           set_bits(rounded, field, std::bit_cast<std::uint32_t>(std::nextafter(value, 10.0f)));
-          if (value != 0) CHECK(asked.judged(i, rounded).kind == DifferenceClass::rounding);
+          if (value != 0) CHECK(asked.check(i, rounded).kind == DifferenceClass::rounding);
           set_bits(wrong, field, std::bit_cast<std::uint32_t>(value + 0.125f));
           // Of a triangle that is met as flat as that nothing better is known.
           if (is_barycentric && asked.hits[i].front().intersection.barycentric_errors[0] > 0.05) continue;
@@ -104,14 +104,14 @@ TEST_CASE("A field that is off is named, and one that is a unit in the last plac
         } else {
           set_bits(wrong, field, bits + 1);
         }
-        const AnswerJudgement judgement = asked.judged(i, wrong);
-        CHECK(judgement.kind == DifferenceClass::mismatch);
-        CHECK(judgement.ruling == Ruling::a_right);
-        CHECK(std::string(judgement.field->name) == field.name);
-        ++judged;
+        const AnswerCheck check = asked.check(i, wrong);
+        CHECK(check.kind == DifferenceClass::mismatch);
+        CHECK(check.ruling == Ruling::a_right);
+        CHECK(std::string(check.field->name) == field.name);
+        ++checked;
       }
     }
-    CHECK(judged > 1000);
+    CHECK(checked > 1000);
   }
 }
 
@@ -130,12 +130,12 @@ TEST_CASE("A ray that starts on a surface may meet it, but not farther off than 
   far.geometry = 1;
   far.t = 1;
   near.t = 1e-7f;
-  CHECK(judge(trial, instances, ray, hits, far, near).kind == DifferenceClass::coincident_geometry);
+  CHECK(check_answers(trial, instances, ray, hits, far, near).kind == DifferenceClass::coincident_geometry);
   near.t = 1e-3f;
-  const AnswerJudgement judgement = judge(trial, instances, ray, hits, far, near);
-  CHECK(judgement.kind == DifferenceClass::mismatch);
-  CHECK(judgement.ruling == Ruling::a_right);
-  CHECK(std::string(judgement.field->name) == "geometry");
+  const AnswerCheck check = check_answers(trial, instances, ray, hits, far, near);
+  CHECK(check.kind == DifferenceClass::mismatch);
+  CHECK(check.ruling == Ruling::a_right);
+  CHECK(std::string(check.field->name) == "geometry");
 }
 
 TEST_CASE("An answer that was not given is a mismatch") {
@@ -146,8 +146,8 @@ TEST_CASE("An answer that was not given is a mismatch") {
     none.type = AnswerType::missing;
     for (std::size_t i = 0; i < asked.rays.size(); ++i) {
       REQUIRE(differ(asked.trial, asked.answers[i], none));
-      CHECK(asked.judged(i, none).kind == DifferenceClass::mismatch);
-      CHECK(asked.judged(i, none).ruling == Ruling::a_right);
+      CHECK(asked.check(i, none).kind == DifferenceClass::mismatch);
+      CHECK(asked.check(i, none).ruling == Ruling::a_right);
     }
   }
 }

@@ -60,7 +60,7 @@ struct Fixture {
             {"trace_a", "query"},
             {"trace_b", "query"},
             {"settings", {{"scene", scene}, {"width", 64}, {"height", 48}, {"spp", 4}, {"depth", 8}}},
-            {"thresholds", {{"non_finite", {{"limit", 0.0}, {"reason", "correct shaders make none"}}}}},
+            {"thresholds", {{"non_finite", {{"limit", 0.0}, {"reason", "correct shaders produce none"}}}}},
             {"metrics",
              {{"ulp", {{"values", histogram.values}, {"largest", histogram.largest}, {"bins", bins}}},
               {"ssim", 0.987654321},

@@ -27,7 +27,7 @@ pathtracer::Renderer renderer_of(const rhi::DeviceHandle& device, const pathtrac
 
 /// Pictures under the seeds from `first_seed` on.
 std::vector<pathtracer::Image> batches(pathtracer::Renderer& renderer, std::uint32_t first_seed, std::uint32_t count) {
-  pathtracer::RenderSettings settings = renderer.settings();
+  pathtracer::RenderSettings settings = renderer.scene().settings();
   std::vector<pathtracer::Image> pictures;
   for (std::uint32_t i = 0; i < count; ++i) {
     settings.seed = first_seed + i;

@@ -35,14 +35,14 @@ Thresholds of(Tier tier) {
 
 /// The one reason why the images differ.
 std::string only_reason(const Evidence& evidence, const Thresholds& thresholds = {}) {
-  const Verdict verdict = judge(evidence, thresholds);
+  const Verdict verdict = make_verdict(evidence, thresholds);
   CHECK_FALSE(verdict.agree);
   REQUIRE(verdict.reasons.size() == 1);
   return verdict.reasons.front();
 }
 
 TEST_CASE("images within every tolerance agree, without reasons") {
-  const Verdict verdict = judge({.metrics = good_metrics()});
+  const Verdict verdict = make_verdict({.metrics = good_metrics()});
   CHECK(verdict.agree);
   CHECK(verdict.reasons.empty());
   CHECK(std::string(name(verdict)) == "agree");
@@ -60,7 +60,7 @@ TEST_CASE("each rule that is broken gives its own reason, with the numbers") {
 
   metrics = good_metrics();
   metrics.non_finite_b = 1;
-  CHECK(only_reason({.metrics = metrics}) == "Image b has 1 pixels with a NaN or an infinity; none may have.");
+  CHECK(only_reason({.metrics = metrics}) == "Image b has 1 pixels with a NaN or an infinity; the limit is 0.");
 
   CHECK(only_reason({.metrics = good_metrics()}, with(Tier::tolerance, RuleMetric::bit_equal, 0.95)) ==
         "Only 90.0000 % of the pixels are bit-equal; at least 95 % must be.");
@@ -72,7 +72,7 @@ TEST_CASE("all broken rules are named") {
   metrics.mean_b = 1.0;
   metrics.non_finite_a = 3;
   metrics.non_finite_b = 3;
-  const Verdict verdict = judge({.metrics = metrics});
+  const Verdict verdict = make_verdict({.metrics = metrics});
   CHECK(verdict.reasons.size() == 4);
   CHECK(std::string(name(verdict)) == "differ");
 }
@@ -80,12 +80,12 @@ TEST_CASE("all broken rules are named") {
 TEST_CASE("limits are inclusive, and black images agree") {
   Metrics metrics = good_metrics();
   metrics.within_1e3 = 0.99;
-  CHECK(judge({.metrics = metrics}).agree);
+  CHECK(make_verdict({.metrics = metrics}).agree);
   metrics.mean_a = 0.0;
   metrics.mean_b = 0.0;
-  CHECK(judge({.metrics = metrics}).agree);
+  CHECK(make_verdict({.metrics = metrics}).agree);
   metrics.non_finite_a = 2;
-  CHECK(judge({.metrics = metrics}, with(Tier::tolerance, RuleMetric::non_finite, 2)).agree);
+  CHECK(make_verdict({.metrics = metrics}, with(Tier::tolerance, RuleMetric::non_finite, 2)).agree);
 }
 
 TEST_CASE("tier exact wants every bit, whatever the limits of the tolerance") {
@@ -93,24 +93,25 @@ TEST_CASE("tier exact wants every bit, whatever the limits of the tolerance") {
   metrics.pixels = 4'000'000;
   metrics.bit_equal = 1.0;
   const Thresholds exact = with(Tier::exact, RuleMetric::bit_equal, 0.5);
-  CHECK(judge({.metrics = metrics}, exact).agree);
-  CHECK(judge({.metrics = metrics}, exact).tier == Tier::exact);
+  CHECK(make_verdict({.metrics = metrics}, exact).agree);
+  CHECK(make_verdict({.metrics = metrics}, exact).tier == Tier::exact);
   metrics.bit_equal = 1.0 - 1.0 / 4'000'000;
   CHECK(only_reason({.metrics = metrics}, exact) ==
-        "1 of 4000000 pixels do not have the same bits; tier exact wants all.");
+        "1 of 4000000 pixels do not have the same bits; tier exact requires all to.");
 }
 
 TEST_CASE("a path that differs without an excuse breaks every tier") {
   Metrics metrics = good_metrics();
   CHECK(only_reason({.metrics = metrics, .mismatches = 1, .bias = {}}) ==
-        "1 path differs without an excuse; none may.");
-  CHECK(judge({.metrics = metrics, .mismatches = 0, .bias = {}}).agree);
+        "1 path differs beyond what rounding explains; the limit is 0.");
+  CHECK(make_verdict({.metrics = metrics, .mismatches = 0, .bias = {}}).agree);
   CHECK(only_reason({.metrics = metrics, .probe_mismatches = 2}) ==
-        "2 answers to probes differ without an excuse; none may.");
-  CHECK(judge({.metrics = metrics, .probe_mismatches = 0}).agree);
+        "2 answers to probes differ beyond what rounding explains; the limit is 0.");
+  CHECK(make_verdict({.metrics = metrics, .probe_mismatches = 0}).agree);
   metrics.bit_equal = 1;
-  CHECK_FALSE(judge({.metrics = metrics, .mismatches = 7, .bias = {}}, of(Tier::exact)).agree);
-  CHECK(judge({.metrics = metrics, .mismatches = 7, .bias = {}}, with(Tier::exact, RuleMetric::mismatches, 7)).agree);
+  CHECK_FALSE(make_verdict({.metrics = metrics, .mismatches = 7, .bias = {}}, of(Tier::exact)).agree);
+  CHECK(make_verdict({.metrics = metrics, .mismatches = 7, .bias = {}}, with(Tier::exact, RuleMetric::mismatches, 7))
+            .agree);
 }
 
 TEST_CASE("tier statistical asks for p-values, not for pixels") {
@@ -118,14 +119,13 @@ TEST_CASE("tier statistical asks for p-values, not for pixels") {
   metrics.within_1e3 = metrics.bit_equal = 0;
   metrics.mean_b = 0.6;
   const auto evidence = [&](double p) { return Evidence{metrics, {}, {{"Image b is darker", p}, {"Nothing", 1.0}}}; };
-  CHECK(judge(evidence(1e-4), of(Tier::statistical)).agree);
+  CHECK(make_verdict(evidence(1e-4), of(Tier::statistical)).agree);
   CHECK(only_reason(evidence(2e-5), of(Tier::statistical)) ==
-        "Image b is darker: chance alone would do that with probability 2e-05, and 0.0001 is the least that passes "
-        "for chance.");
-  CHECK(judge(evidence(2e-5), with(Tier::statistical, RuleMetric::bias_p_value, 1e-5)).agree);
-  CHECK_THROWS_AS(judge({.metrics = metrics}, of(Tier::statistical)), std::invalid_argument);
+        "Image b is darker: the p-value is 2e-05, the minimum is 0.0001.");
+  CHECK(make_verdict(evidence(2e-5), with(Tier::statistical, RuleMetric::bias_p_value, 1e-5)).agree);
+  CHECK_THROWS_AS(make_verdict({.metrics = metrics}, of(Tier::statistical)), std::invalid_argument);
   metrics.non_finite_a = 1;
-  CHECK_FALSE(judge(evidence(1.0), of(Tier::statistical)).agree);
+  CHECK_FALSE(make_verdict(evidence(1.0), of(Tier::statistical)).agree);
 }
 
 TEST_CASE("few pixels that differ by much are noise of the mean, many that differ by the same are not") {
@@ -135,16 +135,16 @@ TEST_CASE("few pixels that differ by much are noise of the mean, many that diffe
   // 16 pixels of one sign are four standard errors, and the least that chance could not be.
   const Metrics few = measure(a, b);
   CHECK(few.mean_b > 1.01 * few.mean_a);
-  CHECK(judge({.metrics = few, .bias = {}}).agree);
+  CHECK(make_verdict({.metrics = few, .bias = {}}).agree);
   for (std::size_t i = 0; i < 40; ++i) b.pixels[i] = glm::vec3(5.0F);
-  CHECK_FALSE(judge({.metrics = measure(a, b), .bias = {}}).agree);
+  CHECK_FALSE(make_verdict({.metrics = measure(a, b), .bias = {}}).agree);
 
   b = a;
   for (glm::vec3& pixel : b.pixels) pixel *= 1.0003F;
   const Metrics all = measure(a, b);
   CHECK(all.within_1e3 == 1.0);
   CHECK(all.mean_noise == doctest::Approx(1.5e-4 / 64).epsilon(0.01));  // rounding of 0.50015
-  CHECK_FALSE(judge({.metrics = all, .bias = {}}).agree);
+  CHECK_FALSE(make_verdict({.metrics = all, .bias = {}}).agree);
 }
 
 }  // namespace

@@ -1,55 +1,38 @@
-// Lists the devices, renders a scene on the CPU twice, on one thread and on all of them, and compares the two images.
+// Renders a scene on two devices and says whether they agree, and if not why: `tandem diff --classify` in a few lines.
+// It writes the first picture too. Usage: example SCENE IMAGE [DEVICE_A [DEVICE_B]]
 
-#include <compare/metrics/metrics.hpp>
-#include <compare/verdict/verdict.hpp>
+#include <compare/session/comparison.hpp>
 #include <cstdio>
 #include <devices/devices.hpp>
 #include <exception>
-#include <pathtracer/load/obj/obj_loader.hpp>
-#include <pathtracer/render/renderer.hpp>
-
-namespace {
+#include <pathtracer/image/image_io.hpp>
+#include <pathtracer/load/scene_loader.hpp>
+#include <string>
+#include <utility>
 
 using namespace tandem;
 
-pathtracer::Image render(const pathtracer::Scene& scene, std::uint32_t threads) {
-  rhi::DeviceDesc desc;
-  desc.name = "cpu";
-  desc.thread_count = threads;
-  desc.on_message = [](const rhi::Message& message) { std::fprintf(stderr, "%s\n", message.text.c_str()); };
-
-  pathtracer::RenderSettings settings;
-  settings.width = 64;
-  settings.height = 64;
-  settings.max_depth = 5;
-
-  pathtracer::Renderer renderer(create_device(desc), scene, settings);
-  renderer.render(4);
-  std::printf("%llu rays in %.1f ms\n", static_cast<unsigned long long>(renderer.ray_count()),
-              renderer.device_milliseconds());
-  return renderer.image();
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::fprintf(stderr, "usage: example SCENE.obj\n");
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: example SCENE IMAGE [DEVICE_A [DEVICE_B]]\n");
     return 2;
   }
   try {
-    for (const rhi::DeviceInfo& device : enumerate_devices()) {
-      std::printf("%s: %s, %s\n", device.name.c_str(), device.description.c_str(), device.driver.c_str());
-    }
-    const pathtracer::Scene scene = pathtracer::load_obj(argv[1]);
-    const compare::Metrics metrics = compare::measure(render(scene, 1), render(scene, 0));
-    // The result of the CPU device does not depend on the number of threads, so every bit must be the same.
-    compare::Thresholds thresholds;
-    thresholds.tier = compare::Tier::exact;
-    const compare::Verdict verdict = compare::judge({.metrics = metrics}, thresholds);
-    std::printf("mean radiance %g, %g of the pixels bit-equal: %s\n", metrics.mean_a, metrics.bit_equal,
-                compare::name(verdict));
-    return verdict.agree && metrics.mean_a > 0.0 ? 0 : 1;
+    const compare::ComparedDevices devices{.a = create_device({.name = argc > 3 ? argv[3] : "cpu"}),
+                                           .b = create_device({.name = argc > 4 ? argv[4] : "cpu-exact"}),
+                                           .arbiter = create_device({.name = "cpu-exact"})};
+    compare::Job job{.scene = pathtracer::load_scene(argv[1]), .settings = {.width = 64, .height = 64}, .samples = 4};
+    const compare::Comparison found =
+        compare::compare_devices(devices, std::move(job), {.classify = true, .probe = true, .probe_rays = 256});
+
+    std::printf("%s against %s: %s; %g of the pixels bit-equal\n", found.a.device.name.c_str(),
+                found.b.device.name.c_str(), compare::name(found.verdict), found.metrics.bit_equal);
+    for (const std::string& reason : found.verdict.reasons) std::printf("  %s\n", reason.c_str());
+    for (const compare::ClassifiedPath& path : found.classification->paths)
+      for (const compare::Divergence& divergence : path.divergences)
+        std::printf("  pixel %u,%u: %s\n", path.path.pixel.x, path.path.pixel.y, divergence.sentence.c_str());
+    pathtracer::write_image(argv[2], found.a.image, found.a.metadata);
+    return found.verdict.agree && found.metrics.mean_a > 0.0 ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "example: %s\n", error.what());
     return 2;

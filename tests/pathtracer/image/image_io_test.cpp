@@ -60,7 +60,7 @@ TEST_CASE("OpenEXR holds layers beside the picture, which stays what it is; PNG 
   // Five channels of four bytes each do not fit into three.
   CHECK(encode_exr(5, 3, all, {}).size() > encode_exr(5, 3, channels, {}).size());
   CHECK_THROWS_WITH_AS(write_image(folder.path() / "layers.png", image, {}, {}, layers),
-                       doctest::Contains("only an .exr has layers"), tandem::Error);
+                       doctest::Contains("only an .exr holds layers"), tandem::Error);
 }
 
 TEST_CASE("PNG is sRGB-encoded, clamped and keeps the metadata") {

@@ -61,7 +61,7 @@ TEST_CASE("Generated spheres are closed, look outwards and stay inside the room 
     for (int corner = 0; corner < 3; ++corner) ++edges[{v[corner], v[(corner + 1) % 3]}];
     const glm::dvec3 a(scene.positions[v[0]]), b(scene.positions[v[1]]), c(scene.positions[v[2]]);
     volume += glm::dot(a, glm::cross(b, c)) / 6;
-    // Up to what leaves the light free; the sides are the smallest ones of the measured box.
+    // The height keeps clear of the light; the sides are the smallest ones of the measured box.
     for (const glm::dvec3& p : {a, b, c}) CHECK(glm::all(glm::greaterThan(p, glm::dvec3(0))));
     for (const glm::dvec3& p : {a, b, c}) CHECK(glm::all(glm::lessThan(p, glm::dvec3(549.6, 420, 559.2))));
   }

@@ -42,7 +42,7 @@ TANDEM_DEVICE_TEST("A change of the camera or of a setting begins anew; what cha
   Accumulation accumulation(renderer);
   const AccumulationSettings frames{.samples_per_frame = 1, .maximum_samples = 100};
   RenderSettings settings = small;
-  settings.camera = renderer.camera();
+  settings.camera = renderer.scene().camera();
   const auto samples_after_frame = [&] {
     accumulation.next_frame(settings, frames);
     return renderer.samples();

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "pathtracer/load/obj/obj_loader.hpp"
+#include "pathtracer/render/first_hits.hpp"
 #include "pathtracer/render/renderer.hpp"
 #include "tests/pathtracer/render/picture.hpp"
 #include "tests/support/device_test.hpp"
@@ -53,7 +54,8 @@ TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what 
   const Scene scene = two_squares();
   for (const TracingMode form : tracing_modes(device)) {
     CAPTURE(name(form));
-    const auto red = Renderer(device_handle, scene, looking_at(0), form).first_hits(6);
+    SceneOnDevice at_red(device_handle, scene, looking_at(0), form);
+    const auto red = first_hits(at_red, 6);
     for (const std::size_t pixel : {0u, 27u, 63u}) {
       CHECK(value(red, "albedo.R", pixel) == doctest::Approx(0.8));
       CHECK(value(red, "albedo.B", pixel) == doctest::Approx(0.2));
@@ -64,7 +66,8 @@ TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what 
       CHECK(whole(red, "id.primitive", pixel) < 2);
       CHECK(whole(red, "id.material", pixel) == 0);
     }
-    const auto shiny = Renderer(device_handle, scene, looking_at(4), form).first_hits(6);
+    SceneOnDevice at_shiny(device_handle, scene, looking_at(4), form);
+    const auto shiny = first_hits(at_shiny, 6);
     CHECK(value(shiny, "albedo.G", 20) == doctest::Approx(0.6));
     CHECK(value(shiny, "normal.X", 20) == doctest::Approx(-std::sqrt(0.5)));
     CHECK(value(shiny, "normal.Z", 20) == doctest::Approx(std::sqrt(0.5)));
@@ -78,7 +81,7 @@ TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what 
 TANDEM_DEVICE_TEST("Where nothing is seen, first hits are nothing; at an edge they are in between") {
   const Scene scene = two_squares();
   Renderer renderer(device_handle, scene, looking_at(-20));
-  const auto nothing = renderer.first_hits(3);
+  const auto nothing = first_hits(renderer.scene(), 3);
   CHECK(value(nothing, "coverage.Y", 5) == 0);
   CHECK(value(nothing, "albedo.R", 5) == 0);
   CHECK(value(nothing, "depth.Z", 5) == 0);
@@ -88,7 +91,7 @@ TANDEM_DEVICE_TEST("Where nothing is seen, first hits are nothing; at an edge th
   RenderSettings settings = looking_at(-1);
   settings.width = settings.height = 1;
   renderer.restart(settings);
-  const auto edge = renderer.first_hits(400);
+  const auto edge = first_hits(renderer.scene(), 400);
   // Five deviations of the mean of 400 draws.
   CHECK(value(edge, "coverage.Y", 0) == doctest::Approx(0.5).epsilon(0.25));
   CHECK(value(edge, "albedo.R", 0) == doctest::Approx(0.8 * value(edge, "coverage.Y", 0)));
@@ -100,7 +103,7 @@ TANDEM_DEVICE_TEST("Looking at first hits changes no picture") {
   Renderer renderer(device_handle, scene, looking_at(0));
   renderer.render(2);
   const Image before = renderer.image();
-  renderer.first_hits(2);
+  first_hits(renderer.scene(), 2);
   CHECK(renderer.image().pixels == before.pixels);
   renderer.render(2);
   CHECK(renderer.image().pixels == test::rendered(device_handle, scene, looking_at(0), 4).pixels);

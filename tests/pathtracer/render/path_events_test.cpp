@@ -10,6 +10,8 @@
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "pathtracer/load/scene_loader.hpp"
 #include "pathtracer/render/device_scene.hpp"
+#include "pathtracer/render/path_recorder.hpp"
+#include "pathtracer/render/ray_tracer.hpp"
 #include "pathtracer/render/renderer.hpp"
 #include "tests/support/device_test.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -83,7 +85,7 @@ void check_rays(Renderer& renderer, const Scene& scene, const std::vector<PathId
     rays.insert(rays.end(), of_path.begin(), of_path.end());
   }
   CHECK(rays.size() == renderer.ray_count());
-  const std::vector<std::uint32_t> answers = renderer.answer(rays);
+  const std::vector<std::uint32_t> answers = pathtracer::trace(renderer.scene(), rays);
   REQUIRE(answers.size() == rays.size());
   bool equal = true, any_hit = false, any_miss = false;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -128,9 +130,9 @@ void check_resumption(Renderer& renderer, const std::vector<PathId>& paths, cons
     }
   }
   REQUIRE(starts.size() > paths.size());
-  std::vector<PathEvents> resumed = renderer.record_paths(starts);
+  std::vector<PathEvents> resumed = record_paths(renderer.scene(), starts);
   for (PathStart& start : starts) start.segment_count = 1;
-  const std::vector<PathEvents> single = renderer.record_paths(starts);
+  const std::vector<PathEvents> single = record_paths(renderer.scene(), starts);
   bool same = true, single_same = true;
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const auto& [path, event] = places[i];
@@ -157,10 +159,10 @@ void check_events(const rhi::DeviceHandle& device, const Scene& scene) {
     Renderer renderer(device, scene, small, form);
     REQUIRE(renderer.render(samples));
     const Image before = renderer.image();
-    const std::vector<PathEvents> events = renderer.record_paths(all_starts());
+    const std::vector<PathEvents> events = record_paths(renderer.scene(), all_starts());
     CHECK(renderer.image().pixels == before.pixels);
     REQUIRE(events.size() == paths.size());
-    check_summaries(before, renderer.summarize_paths(all_starts()), events);
+    check_summaries(before, summarize_paths(renderer.scene(), all_starts()), events);
     check_rays(renderer, scene, paths, events);
     check_resumption(renderer, paths, events);
 
@@ -192,7 +194,7 @@ TANDEM_DEVICE_TEST("What a device reports of a hit belongs to the primitive that
   const Scene scene = in_device_order(load_obj(source_directory / "scenes" / "cornell_box.obj"));
   Renderer renderer(device_handle, scene, small);
   std::size_t hits = 0;
-  for (const PathEvents& events : renderer.record_paths(all_starts())) {
+  for (const PathEvents& events : record_paths(renderer.scene(), all_starts())) {
     for (const PathEvent& event : events) {
       if (event.kind() != EventKind::ray || event.words[event_word::ray_kind] != 0) continue;
       const std::uint32_t answer = event.words[event_word::ray_answer];
@@ -226,7 +228,7 @@ TEST_CASE("Where no vertex has texture coordinates, shaders that read them find 
   Renderer renderer(device, scene, settings);
   std::size_t surfaces = 0;
   bool zero = true;
-  for (const PathEvents& events : renderer.record_paths(all_starts())) {
+  for (const PathEvents& events : record_paths(renderer.scene(), all_starts())) {
     for (const PathEvent& event : events) {
       if (event.kind() != EventKind::surface) continue;
       ++surfaces;

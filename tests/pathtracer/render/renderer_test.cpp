@@ -139,13 +139,13 @@ TANDEM_DEVICE_TEST("A scene without lights has a white background, unless one is
   const Scene scene = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "newmtl a\nKd 0 0 0\n");
   RenderSettings settings{.width = 16, .height = 16};
   Renderer renderer(device_handle, scene, settings);
-  CHECK(renderer.warnings().size() == 1);
+  CHECK(renderer.scene().warnings().size() == 1);
   renderer.render(2);
   CHECK(renderer.image().at(15, 0) == glm::vec3(1));  // beyond the diagonal of the black triangle
   CHECK(renderer.metadata().at("background") == "1 1 1");
   settings.background = glm::vec3(0, 0.5f, 2);
   renderer.restart(settings);
-  CHECK(renderer.warnings().empty());
+  CHECK(renderer.scene().warnings().empty());
   renderer.render(2);
   CHECK(renderer.image().at(15, 0) == glm::vec3(0, 0.5f, 2));
 }
@@ -205,14 +205,14 @@ TANDEM_DEVICE_TEST("Metadata says how a picture came about") {
   CHECK(metadata.at("scene") == "cornell_box.obj");
   CHECK(metadata.at("device") == device.info().name);
   CHECK(metadata.at("driver") == device.info().driver);
-  CHECK(metadata.at("trace") == name(renderer.trace()));
+  CHECK(metadata.at("trace") == name(renderer.scene().trace()));
   CHECK(metadata.at("size") == "16x8");
   CHECK(metadata.at("samples") == "2");
   CHECK(metadata.at("depth") == "4");
   CHECK(metadata.at("seed") == "9");
   for (const char* key : {"camera", "background", "rays", "milliseconds", "version"}) CHECK(metadata.contains(key));
   CHECK(renderer.device_milliseconds() > 0);
-  CHECK(renderer.build_milliseconds() > 0);
+  CHECK(renderer.scene().build_milliseconds() > 0);
 }
 
 TEST_CASE("The picture of the CPU device does not depend on the number of threads") {

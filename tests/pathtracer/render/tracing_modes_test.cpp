@@ -46,7 +46,7 @@ TANDEM_DEVICE_TEST("A device without ray queries renders through a pipeline, in 
   const RenderSettings settings{.width = 33, .height = 19, .max_depth = 5};
   const rhi::DeviceHandle limited = test::device_without_queries(device);
   Renderer renderer(limited, scene, settings);
-  CHECK(renderer.trace() == TracingMode::pipeline);
+  CHECK(renderer.scene().trace() == TracingMode::pipeline);
   REQUIRE(renderer.render(6));
   const Image expected = test::rendered(device_handle, scene, settings, 6);
   CHECK(renderer.image().pixels == expected.pixels);

@@ -70,7 +70,7 @@ TANDEM_DEVICE_TEST("A plate of opacity 1/4 lets 3/4 of the background pass, two 
   }
 }
 
-TANDEM_DEVICE_TEST("A plate of opacity 1/4 before a light lets 3/4 of its light pass") {
+TANDEM_DEVICE_TEST("A plate of opacity 1/4 in front of a light transmits 3/4 of it") {
   const Scene without = load_text(lit_floor, floor_materials);
   const Scene with = load_text(lit_floor + plate_below_light, floor_materials + "newmtl plate\nKd 0\nd 0.25\n");
   for (const TracingMode form : test::tracing_modes(device)) {
@@ -95,7 +95,7 @@ TANDEM_DEVICE_TEST("An opacity of 0 changes no bit of the picture behind") {
   }
 }
 
-TANDEM_DEVICE_TEST("A light of opacity 1/2 gives half its light, seen and sampled") {
+TANDEM_DEVICE_TEST("A light of opacity 1/2 gives half its radiance, seen and sampled") {
   const std::string half = "newmtl floor\nKd 0.8\nnewmtl light\nKd 0\nKe 100\nd 0.5\n";
   const Scene seen = load_text(square("light", 4, 0), "newmtl light\nKd 0\nKe 2\nd 0.5\n");
   RenderSettings black = emission_only;

@@ -41,7 +41,7 @@ struct Comparison {
         scene(scene_a) {
     REQUIRE(a.render(samples));
     REQUIRE(b.render(samples));
-    result = classify({a, b, arbiter, scene}, a.image(), b.image(), samples, {.survey_pixels = 64});
+    result = classify({a.scene(), b.scene(), arbiter, scene}, a.image(), b.image(), samples, {.survey_pixels = 64});
   }
 
   std::uint64_t count(DifferenceClass difference_class) const {
@@ -49,7 +49,8 @@ struct Comparison {
   }
 
   rhi::DeviceHandle exact;
-  Renderer a, b, arbiter;
+  Renderer a, b;
+  SceneOnDevice arbiter;
   const Scene& scene;
   Classification result;
 };
@@ -141,8 +142,8 @@ TANDEM_DEVICE_TEST("A picture that is not the sum of its paths is a mismatch by 
   Comparison found(device_handle, scene, device_handle, scene);
   Image wrong = found.b.image();
   wrong.pixels[100] *= 1.5f;
-  const Classification result =
-      classify({found.a, found.b, found.arbiter, scene}, found.a.image(), wrong, samples, {.survey_pixels = 0});
+  const Classification result = classify({found.a.scene(), found.b.scene(), found.arbiter, scene}, found.a.image(),
+                                         wrong, samples, {.survey_pixels = 0});
   CHECK(result.differing_pixels == 1);
   CHECK(result.mismatches() == 1);
   REQUIRE(result.pixels.size() == 1);

@@ -12,7 +12,7 @@
 #include "compare/path/scene_names.hpp"
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "pathtracer/render/device_scene.hpp"
-#include "pathtracer/render/renderer.hpp"
+#include "pathtracer/render/path_recorder.hpp"
 #include "tests/support/device_test.hpp"
 
 // A device that is given another scene than the other one: what differs first must be what was changed.
@@ -42,7 +42,8 @@ std::vector<PathEvents> record(const rhi::DeviceHandle& device, const Scene& sce
   std::vector<pathtracer::PathStart> starts;
   for (std::uint32_t y = 0; y < settings.height; ++y)
     for (std::uint32_t x = 0; x < settings.width; ++x) starts.push_back({.path = {.pixel = {x, y}, .sample = 1}});
-  return pathtracer::Renderer(device, scene, settings).record_paths(starts);
+  pathtracer::SceneOnDevice on_device(device, scene, settings);
+  return pathtracer::record_paths(on_device, starts);
 }
 
 const EventField& field(EventKind kind, std::string_view name) {

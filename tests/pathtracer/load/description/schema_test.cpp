@@ -33,7 +33,7 @@ Json read_json(const std::filesystem::path& path) {
 }
 
 const test::JsonSchema& schema() {
-  static const test::JsonSchema schema(read_json(source_directory / "docs" / "scene.schema.json"));
+  static const test::JsonSchema schema(read_json(source_directory / "docs" / "schema" / "scene.schema.json"));
   return schema;
 }
 

@@ -210,6 +210,6 @@ TEST_CASE("What cannot be meant is an error that names the line") {
   CHECK(contains(error_of("newmtl\n"), "test.mtl:1: "));
   CHECK(contains(error_of("Kd 1 1 1\n"), "before the first newmtl"));
   CHECK(contains(error_of(""), "is empty"));
-  CHECK(contains(error_of(std::string("newmtl a\0b", 10)), "is no text"));
+  CHECK(contains(error_of(std::string("newmtl a\0b", 10)), "is not a text"));
   CHECK(load("# nothing\n").materials.empty());
 }

@@ -150,7 +150,7 @@ TEST_CASE("What cannot be meant is one sentence with file and line") {
   CHECK(contains(error_of("v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "test.obj:2: "));
   CHECK(contains(error_of("v 0 0 0\nv 0 inf 0\nv 0 1 0\nf 1 2 3\n"), "'inf'"));
   CHECK(contains(error_of("v 0 0 0\nv 0 1e39 0\nv 0 1 0\nf 1 2 3\n"), "'1e39'"));
-  CHECK(contains(error_of("v 0 0 0\nv 0 1e400 0\nv 0 1 0\nf 1 2 3\n"), "'1e400' is no finite number"));
+  CHECK(contains(error_of("v 0 0 0\nv 0 1e400 0\nv 0 1 0\nf 1 2 3\n"), "'1e400' is not a finite number"));
   CHECK(contains(error_of("v 0 0 0\nv 0 -2e12 0\nv 0 1 0\nf 1 2 3\n"), "'-2e12' is beyond 1e+12"));
   CHECK(
       contains(error_of("v 1" + std::string(330, '0') + "e-330 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), "too many digits"));
@@ -158,14 +158,14 @@ TEST_CASE("What cannot be meant is one sentence with file and line") {
   CHECK(contains(error_of(square + "f 1 2 5\n"), "test.obj:5: the vertex index 5 is out of range: there are 4"));
   CHECK(contains(error_of(square + "f 1 2 -5\n"), "index -5 is out of range"));
   CHECK(contains(error_of(square + "f 1//1 2//1 3//1\n"), "normal index 1 is out of range"));
-  CHECK(contains(error_of(square + "f 0 1 2\n"), "'0' is no corner"));
-  CHECK(contains(error_of(square + "f 1 2 99999999999\n"), "'99999999999' is no corner"));
-  CHECK(contains(error_of(square + "f 1/ 2 3\n"), "'1/' is no corner"));
-  CHECK(contains(error_of(square + "f 1 2 x\n"), "'x' is no corner"));
+  CHECK(contains(error_of(square + "f 0 1 2\n"), "'0' is not a corner"));
+  CHECK(contains(error_of(square + "f 1 2 99999999999\n"), "'99999999999' is not a corner"));
+  CHECK(contains(error_of(square + "f 1/ 2 3\n"), "'1/' is not a corner"));
+  CHECK(contains(error_of(square + "f 1 2 x\n"), "'x' is not a corner"));
   CHECK(contains(error_of(square + "f 1 2\n"), "fewer than three corners"));
   CHECK(contains(error_of(square), "holds no triangles"));
   CHECK(contains(error_of(""), "is empty"));
-  CHECK(contains(error_of(std::string(64, '\0')), "is no text"));
+  CHECK(contains(error_of(std::string(64, '\0')), "is not a text"));
   CHECK(contains(error_of("mtllib test.mtl\n" + square + "f 1 2 3\n", "newmtl a\nKd x\n"), "test.mtl:2: "));
   for (const std::string& sentence : {error_of(square), error_of("v 1\n")})
     CHECK(sentence.find('\n') == std::string::npos);
@@ -187,7 +187,7 @@ TEST_CASE("A file without end is refused when its first bytes are no text") {
 TEST_CASE("A file that is cut off is an error where it shows") {
   CHECK(contains(error_of(square + "f 1 2 3\nv 1.0 2."), "test.obj:6: a vertex has fewer"));
   CHECK(contains(error_of(square + "f 1 2 3\nf 1 2"), "test.obj:6: a face has fewer"));
-  CHECK(contains(error_of(square + "f 1 2 3\nf 1//"), "'1//' is no corner"));
+  CHECK(contains(error_of(square + "f 1 2 3\nf 1//"), "'1//' is not a corner"));
 }
 
 TEST_CASE("A missing file and a folder are errors") {

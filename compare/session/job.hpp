@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "pathtracer/render/render_settings.hpp"
+#include "pathtracer/scene/scene.hpp"
+
+namespace tandem::compare {
+
+/// What is to be rendered, and how.
+struct Job {
+  pathtracer::Scene scene;
+  pathtracer::RenderSettings settings;
+  std::uint32_t samples = 16;  ///< per pixel
+  std::filesystem::path file;  ///< of the scene, for reports; empty: the scene's name
+};
+
+/// What a report says of the scene and how it was rendered.
+struct JobSummary {
+  std::string scene;       ///< the file
+  std::string scene_hash;  ///< of its content, as pathtracer::scene_hash gives it
+  std::uint64_t triangles = 0;
+  std::uint64_t spheres = 0;
+  pathtracer::RenderSettings settings;
+  std::uint32_t samples = 0;  ///< per pixel
+};
+
+JobSummary summary(const Job& job);
+
+}  // namespace tandem::compare
