@@ -63,8 +63,8 @@ TEST_CASE("a value that rounding moved says by how much, and one that it does no
         "Segment 3: the throughput of the segment differs by 7 units in the last place (0.25 relative): rounding.");
   divergence.difference_class = DifferenceClass::mismatch;
   CHECK(sentence_of(divergence) ==
-        "Segment 3: the throughput of the segment is (0.5, 0.25, 0) on a and (0.5, 0.25, 0.125) on b, 0.25 apart "
-        "relatively, from the same state: more than rounding explains.");
+        "Segment 3: the throughput of the segment is (0.5, 0.25, 0) on a and (0.5, 0.25, 0.125) on b, 0.25 relative, "
+        "from the same state: more than rounding explains.");
 }
 
 TEST_CASE("what a device reports of a hit is said to be about the same hit") {
@@ -90,10 +90,10 @@ TEST_CASE("a flipped roulette names its number and threshold, on whichever devic
                         .b = roulette_event(0.5f, 0.5f, true),
                         .field = field(EventKind::roulette, "survives")};
   CHECK(sentence_of(divergence) ==
-        "Segment 4: roulette ends the path on a and goes on on b: the number 0.5 lies within rounding of the threshold "
-        "0.5.");
+        "Segment 4: roulette ends it on a and continues the path on b: the number 0.5 lies within rounding of the "
+        "threshold 0.5.");
   std::swap(divergence.a, divergence.b);
-  CHECK(sentence_of(divergence).find("roulette goes on on a and ends the path on b") != std::string::npos);
+  CHECK(sentence_of(divergence).find("roulette continues the path on a and ends it on b") != std::string::npos);
 }
 
 TEST_CASE("devices that go on with different events say with which") {
@@ -102,15 +102,14 @@ TEST_CASE("devices that go on with different events say with which") {
                         .a = event(EventKind::emission),
                         .b = end_event(pathtracer::EndReason::side)};
   CHECK(sentence_of(divergence) ==
-        "Segment 1: a goes on with an emission, b with the end of the path: moving the segment by rounding turns this "
-        "decision on one device, too.");
+        "Segment 1: a continues with an emission, b with the end of the path: moving the segment's state by rounding "
+        "flips this decision on one device.");
   divergence.difference_class = DifferenceClass::mismatch;
   divergence.a = segment_event(2, {}, {});
   divergence.b = PathEvent{};
-  CHECK(
-      sentence_of(divergence) ==
-      "Segment 1: a goes on with the next segment, b with nothing: from the same state, and rounding does not explain "
-      "it.");
+  CHECK(sentence_of(divergence) ==
+        "Segment 1: a continues with the next segment, b with nothing: from the same state, and rounding does not "
+        "explain it.");
 }
 
 TEST_CASE("two answers to a ray say who met what, and why either or one is right") {
@@ -119,9 +118,9 @@ TEST_CASE("two answers to a ray say who met what, and why either or one is right
   const auto sentence = [&](const Divergence& divergence) { return sentence_of_answers(divergence, scene, {}); };
 
   Divergence wrong = two_answers(DifferenceClass::mismatch, 0, 1);
-  CHECK(sentence(wrong) == start + "; exactly it is nothing, and rounding does not explain the difference.");
+  CHECK(sentence(wrong) == start + "; the exact answer is nothing, and rounding does not explain the difference.");
   wrong.exact_answer = 1;
-  CHECK(sentence(wrong) == start + "; exactly it is triangle 1, and rounding does not explain the difference.");
+  CHECK(sentence(wrong) == start + "; the exact answer is triangle 1, and rounding does not explain the difference.");
 
   // Their common edge runs through (1, 1, 1).
   const std::string tie = sentence(two_answers(DifferenceClass::edge_or_vertex_tie, 0, 1));
@@ -132,10 +131,10 @@ TEST_CASE("two answers to a ray say who met what, and why either or one is right
   CHECK(sentence(two_answers(DifferenceClass::coincident_geometry, 0, 1)) ==
         start + "; both lie in the same place: either is right.");
   CHECK(sentence(two_answers(DifferenceClass::flipped_decision, 0, 1)) ==
-        start + "; the nearer one is transparent, and whether it lets the ray through lies within rounding.");
+        start + "; the nearer one is transparent, and whether the ray passes it lies within rounding.");
   CHECK(sentence(two_answers(DifferenceClass::grazing_visibility, 1, 0, RayKind::occlusion)) ==
-        "Segment 2: the shadow ray from (1, 1, 0) finds something on a and nothing on b in its way; it grazes what is "
-        "there: either is right.");
+        "Segment 2: the shadow ray from (1, 1, 0) finds something on a and nothing on b in its way; it grazes an "
+        "occluder: either is right.");
 }
 
 }  // namespace
