@@ -2,10 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <set>
 
 #include "shaders/spirv.hpp"
+#include "tests/support/environment_variable.hpp"
 
 namespace tandem {
 
@@ -32,21 +32,16 @@ TEST_CASE("A name that no device has is an error that names those there are") {
       CHECK_FALSE(std::string(error.what()).empty());
     }
   }
-  try {
-    create_device({.name = "gpu"});
-  } catch (const rhi::Error& error) {
-    CHECK(std::string(error.what()).find("cpu") != std::string::npos);
-  }
+  CHECK_THROWS_WITH_AS(create_device({.name = "gpu"}), doctest::Contains("cpu"), rhi::Error);
 }
 
 TEST_CASE("The shaders that ship run on the CPU without a compiler") {
-  ::setenv("TANDEM_CXX", "/nonexistent", 1);
+  const test::EnvironmentVariable compiler("TANDEM_CXX", "/nonexistent");
   const rhi::DeviceHandle device = create_device({.name = "cpu"});
   CHECK_NOTHROW(device->create_compute_pipeline(
       {.shader = device->create_shader_module({.spirv = shaders::path_trace(), .label = "path_trace.comp"}),
        .specialization = {},
        .label = "path_trace"}));
-  ::unsetenv("TANDEM_CXX");
 }
 
 }  // namespace tandem

@@ -13,8 +13,9 @@
 
 #include "rhi/error.hpp"
 #include "rhi/glsl/compile.hpp"
-#include "tests/rhi_cpu/scratch.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/environment_variable.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 // What only the CPU device can be asked, on kernels that are C++ functions of this file: neither the translator nor a
 // compiler has a part in it. What every device must do is tested in tests/rhi.

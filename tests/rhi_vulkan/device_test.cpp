@@ -2,50 +2,23 @@
 
 #include <doctest/doctest.h>
 
-#include <cstdlib>
 #include <cstring>
-#include <mutex>
 
 #include "rhi/glsl/compile.hpp"
 #include "rhi_vulkan/vulkan.hpp"
 #include "tests/rhi/dispatch.hpp"
+#include "tests/support/environment_variable.hpp"
+#include "tests/support/messages.hpp"
 
 using namespace tandem;
 
 namespace {
-
-/// Messages, kept.
-struct Listener {
-  std::shared_ptr<std::vector<rhi::Message>> messages = std::make_shared<std::vector<rhi::Message>>();
-  std::shared_ptr<std::mutex> mutex = std::make_shared<std::mutex>();
-
-  void operator()(const rhi::Message& message) const {
-    const std::lock_guard lock(*mutex);
-    messages->push_back(message);
-  }
-};
 
 rhi::DeviceDesc named(const std::string& name) {
   rhi::DeviceDesc desc;
   desc.name = name;
   return desc;
 }
-
-/// Sets an environment variable for as long as it lives.
-class ScopedEnvironment {
- public:
-  ScopedEnvironment(const char* name, const char* value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    setenv(name, value, 1);
-  }
-  ~ScopedEnvironment() { old_.empty() ? unsetenv(name_) : setenv(name_, old_.c_str(), 1); }
-  ScopedEnvironment(const ScopedEnvironment&) = delete;
-  ScopedEnvironment& operator=(const ScopedEnvironment&) = delete;
-
- private:
-  const char* name_;
-  std::string old_;
-};
 
 }  // namespace
 
@@ -75,22 +48,22 @@ TEST_CASE("names that name no device are errors that say which there are") {
 }
 
 TEST_CASE("without a driver there is one clear sentence and no device") {
-  const ScopedEnvironment drivers("VK_DRIVER_FILES", "/nonexistent/driver.json");
-  const ScopedEnvironment older_drivers("VK_ICD_FILENAMES", "/nonexistent/driver.json");
+  const test::EnvironmentVariable drivers("VK_DRIVER_FILES", "/nonexistent/driver.json");
+  const test::EnvironmentVariable older_drivers("VK_ICD_FILENAMES", "/nonexistent/driver.json");
   CHECK_ERROR(no_such_device, "no Vulkan", vulkan::create_device(named("vulkan")));
-  const Listener listener;
-  CHECK(vulkan::enumerate(listener).empty());
-  CHECK_FALSE(listener.messages->empty());
+  test::Messages messages;
+  CHECK(vulkan::enumerate(messages.callback()).empty());
+  CHECK_FALSE(messages.take().empty());
 }
 
 TEST_CASE("driver validation speaks through on_message") {
-  const Listener listener;
+  test::Messages messages;
   rhi::DeviceDesc desc = named("vulkan");
   desc.driver_validation = true;
-  desc.on_message = listener;
+  desc.on_message = messages.callback();
   const rhi::DeviceHandle device = vulkan::create_device(desc);
   device->submit(device->create_command_list("fine"))->wait();
-  CHECK(listener.messages->empty());
+  CHECK(messages.take().empty());
   // More shared memory than any device has, for which the interface has no rule.
   const std::vector<std::uint32_t> spirv = glsl::compile(
       "#version 460\nlayout(local_size_x = 1) in;\n"
@@ -103,9 +76,10 @@ TEST_CASE("driver validation speaks through on_message") {
   } catch (const rhi::Error&) {
     // The driver may refuse as well.
   }
-  REQUIRE_FALSE(listener.messages->empty());
-  CHECK(listener.messages->front().source == "vulkan validation");
-  CHECK(listener.messages->front().severity == rhi::Severity::error);
+  const std::vector<rhi::Message> said = messages.take();
+  REQUIRE_FALSE(said.empty());
+  CHECK(said.front().source == "vulkan validation");
+  CHECK(said.front().severity == rhi::Severity::error);
 }
 
 TEST_CASE("objects of another device are refused") {

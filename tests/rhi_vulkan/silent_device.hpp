@@ -1,7 +1,5 @@
 #pragma once
 
-#include <doctest/doctest.h>
-
 #include "tests/support/device_test.hpp"
 
 namespace tandem::test {
@@ -12,14 +10,12 @@ class SilentDevice {
   SilentDevice() = default;
   SilentDevice(const SilentDevice&) = delete;
   SilentDevice& operator=(const SilentDevice&) = delete;
-  ~SilentDevice() {
-    for (const std::string& warning : take_warnings("vulkan")) FAIL_CHECK(warning);
-  }
 
   rhi::Device& operator*() const { return *device_; }
   rhi::Device* operator->() const { return device_.get(); }
 
  private:
+  NoWarnings no_warnings_{{"vulkan"}};
   rhi::DeviceHandle device_ = device("vulkan");
 };
 

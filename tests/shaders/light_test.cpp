@@ -358,6 +358,7 @@ TANDEM_DEVICE_TEST("Lights of all kinds together give the sum of their irradianc
 }
 
 TEST_CASE("Every device samples lights with the same bits") {
+  const test::NoWarnings no_warnings;
   Scene scene = rectangle_scene(3);
   scene.spheres.push_back({.centre = {0, 5, 3}, .radius = 0.5f, .material = add_emission(scene, 20)});
   scene.environment = Environment{.radiance = glm::vec3(0.5f), .rotation = 33};

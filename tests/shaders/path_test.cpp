@@ -232,6 +232,7 @@ TANDEM_DEVICE_TEST("A face that a scene holds twice looks like one, whichever co
 }
 
 TEST_CASE("All devices compute the same images to the last bit") {
+  const test::NoWarnings no_warnings;
   const test::TestScene scene = room();
   RenderConstants constants = test::render_constants({0.1f, 0, 0.9f}, 128, 128, scene);
   constants.dispatch.sample_count = 4;

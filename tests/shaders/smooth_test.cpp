@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "tests/shaders/random_source.hpp"
+#include "tests/shaders/scene_queries.hpp"
 #include "tests/shaders/test_scene.hpp"
 #include "tests/support/device_test.hpp"
 
@@ -53,27 +54,8 @@ struct Query {
 
 std::vector<float> run_shading_normals(rhi::Device& device, const test::TestScene& scene,
                                        const std::vector<Query>& queries) {
-  const test::DeviceScene device_scene = test::upload(device, scene);
-  const rhi::ComputePipelineHandle pipeline = test::compute_pipeline(device, shading_normals, "shading normals");
-  const rhi::BufferHandle answers = test::buffer_of(device, std::vector<float>(3 * queries.size()), "answers");
-  const auto whole = [](const rhi::BufferHandle& buffer) { return rhi::BufferRange{.buffer = buffer}; };
-  const rhi::BindGroupHandle scene_group = device.create_bind_group(
-      {.pipeline = pipeline,
-       .set = 0,
-       .entries = test::scene_entries(pipeline->interface(), device_scene, device_scene.unused),
-       .label = "scene"});
-  const rhi::BindGroupHandle query_group = device.create_bind_group(
-      {.pipeline = pipeline,
-       .set = 1,
-       .entries = {{.binding = 2, .resource = whole(test::buffer_of(device, queries, "queries"))},
-                   {.binding = 3, .resource = whole(answers)}},
-       .label = "queries"});
-  rhi::CommandListHandle list = device.create_command_list("shading normals");
-  list->dispatch({.pipeline = pipeline,
-                  .bind_groups = {scene_group, query_group},
-                  .workgroup_count = {static_cast<std::uint32_t>(queries.size() + 63) / 64, 1, 1}});
-  device.submit(list)->wait();
-  return test::contents<float>(device, answers, 3 * queries.size());
+  return test::answer_queries(device, test::upload(device, scene), shading_normals, "shading normals", queries,
+                              std::vector<float>(3 * queries.size()));
 }
 
 glm::dvec3 unit_vector(test::RandomSource& random) {
@@ -287,6 +269,7 @@ TANDEM_DEVICE_TEST("A smooth sphere of index 1 is invisible, exactly; one of gla
 }
 
 TEST_CASE("All devices shade smooth spheres to the last bit") {
+  const test::NoWarnings no_warnings;
   test::TestScene scene;
   const std::uint32_t white = scene.add_material(test::diffuse(glm::vec3(0.7f, 0.6f, 0.5f)));
   const std::uint32_t shiny = scene.add_material(test::mirror(glm::vec3(0.9f)));

@@ -203,6 +203,7 @@ TANDEM_DEVICE_TEST("Images in every format, address mode and filter are what dou
 }
 
 TEST_CASE("All devices read textures to the last bit") {
+  const test::NoWarnings no_warnings;
   test::RandomSource random(45);
   Scene scene = scene_with_triangle();
   for (const TexelFormat format : formats) add_texture(scene, random_image(format, 13, 9, random).image);
@@ -224,7 +225,6 @@ TEST_CASE("All devices read textures to the last bit") {
     for (std::size_t i = 0; i < outputs.front().size(); ++i)
       different += std::bit_cast<std::uint32_t>(outputs.back()[i]) != std::bit_cast<std::uint32_t>(outputs.front()[i]);
     CHECK(different == 0);
-    for (const std::string& warning : test::take_warnings(name)) FAIL_CHECK(warning);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "tests/shaders/random_source.hpp"
+#include "tests/shaders/scene_queries.hpp"
 #include "tests/shaders/test_scene.hpp"
 #include "tests/support/device_test.hpp"
 
@@ -120,29 +121,11 @@ TANDEM_DEVICE_TEST(
       if (query.triangles[0] == query.triangles[1]) query.triangles[1] = (query.triangles[1] + 1000) % triangle_count;
       queries.push_back(query);
     }
-    const rhi::ComputePipelineHandle pipeline = test::compute_pipeline(device, leaving_rays, "leaving rays");
-    const rhi::BufferHandle answers =
-        test::buffer_of(device, std::vector<std::uint32_t>(queries.size(), 8u), "answers");
-    const auto whole = [](const rhi::BufferHandle& buffer) { return rhi::BufferRange{.buffer = buffer}; };
-    const rhi::BindGroupHandle scene_group = device.create_bind_group(
-        {.pipeline = pipeline,
-         .set = 0,
-         .entries = test::scene_entries(pipeline->interface(), device_scene, device_scene.unused),
-         .label = "scene"});
-    const rhi::BindGroupHandle query_group = device.create_bind_group(
-        {.pipeline = pipeline,
-         .set = 1,
-         .entries = {{.binding = 2, .resource = whole(test::buffer_of(device, queries, "queries"))},
-                     {.binding = 3, .resource = whole(answers)}},
-         .label = "queries"});
-    rhi::CommandListHandle list = device.create_command_list("leaving rays");
-    list->dispatch({.pipeline = pipeline,
-                    .bind_groups = {scene_group, query_group},
-                    .workgroup_count = {static_cast<std::uint32_t>(queries.size() + 63) / 64, 1, 1}});
-    device.submit(list)->wait();
+    const std::vector<std::uint32_t> answers = test::answer_queries(
+        device, device_scene, leaving_rays, "leaving rays", queries, std::vector<std::uint32_t>(queries.size(), 8u));
 
     int unanswered = 0, itself = 0, escaped = 0, occluded = 0;
-    for (const std::uint32_t answer : test::contents<std::uint32_t>(device, answers, queries.size())) {
+    for (const std::uint32_t answer : answers) {
       unanswered += (answer & 8u) != 0;
       itself += (answer & 1u) != 0;
       escaped += (answer & 2u) != 0;

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include <doctest/doctest.h>
 
 #include "rhi/device.hpp"
 
-/// Test bodies that run once per device. The devices are those of $TANDEM_TEST_DEVICES (comma-separated), by default
-/// "cpu,vulkan"; one that cannot be created fails the test rather than skipping it.
+/// Test cases that are registered once per device. The devices are those of $TANDEM_TEST_DEVICES (comma-separated), by
+/// default "cpu,vulkan"; one that cannot be created fails its tests rather than skipping them.
 namespace tandem::test {
 
 /// Names of the devices under test.
@@ -18,6 +23,20 @@ rhi::DeviceHandle device(const std::string& name);
 /// What the validation layers have said of the device since the last call; a test that runs on a device must leave it
 /// empty.
 std::vector<std::string> take_warnings(const std::string& name);
+
+/// At the end of its scope, also when an exception ends it, the test fails for every message of the validation layers:
+/// so none is blamed on the next test. TANDEM_DEVICE_TEST has one of its own.
+class NoWarnings {
+ public:
+  /// @param names of the devices that the test uses
+  explicit NoWarnings(std::vector<std::string> names = device_names()) : names_(std::move(names)) {}
+  ~NoWarnings();
+  NoWarnings(const NoWarnings&) = delete;
+  NoWarnings& operator=(const NoWarnings&) = delete;
+
+ private:
+  std::vector<std::string> names_;
+};
 
 /// Destroys the devices and returns what was said of them meanwhile. Before main returns: drivers and layers take
 /// themselves apart when the process exits, and cannot be called any more.
@@ -37,19 +56,10 @@ std::vector<T> contents(rhi::Device& device, const rhi::BufferHandle& buffer, st
 
 }  // namespace tandem::test
 
-/// TANDEM_DEVICE_TEST("what must be true") { ... `device` is an rhi::Device& ... }
-/// One doctest case with a subcase per device; fails on any validation message.
-#define TANDEM_DEVICE_TEST_IMPLEMENTATION(name, function)                                                  \
-  static void function(::tandem::rhi::Device& device);                                                     \
-  TEST_CASE(name) {                                                                                        \
-    for (const std::string& device_name : ::tandem::test::device_names()) {                                \
-      SUBCASE(device_name.c_str()) {                                                                       \
-        function(*::tandem::test::device(device_name));                                                    \
-        for (const std::string& warning : ::tandem::test::take_warnings(device_name)) FAIL_CHECK(warning); \
-      }                                                                                                    \
-    }                                                                                                      \
-  }                                                                                                        \
-  static void function([[maybe_unused]] ::tandem::rhi::Device& device)
+/// TANDEM_DEVICE_TEST("what must be true") { ... }
+/// One doctest case per device under test, named "what must be true [cpu]". Its body has `device`, an rhi::Device&,
+/// `device_handle`, its rhi::DeviceHandle, and `device_name`, which created it. It fails on any message of the
+/// validation layers.
 #define TANDEM_DEVICE_TEST(name) TANDEM_DEVICE_TEST_IMPLEMENTATION(name, DOCTEST_ANONYMOUS(tandem_device_test_))
 
 #include "tests/support/device_test_inline.hpp"

@@ -7,27 +7,27 @@
 
 #include "pathtracer/image/image_io.hpp"
 #include "tests/support/device_test.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
 
 const std::string scenes = TANDEM_SOURCE_DIRECTORY "/scenes/";
 
-Outcome diff(const TemporaryFolder& folder, const std::string& scene, const std::vector<std::string>& more) {
-  const std::vector<std::string> names = device_names();
-  std::vector<std::string> words = {"diff",       scene,    "--a",  names.front(), "--b",
-                                    names.back(), "--size", "16x8", "--spp",       "2"};
-  words.insert(words.end(), more.begin(), more.end());
-  return run_tandem(words, {.folder = folder.path()});
+/// `diff` of the first and the last device under test, of few pixels and samples, with the further words of `more`.
+Outcome diff(const ScratchFolder& folder, const std::string& scene, const std::string& more = "") {
+  const std::vector<std::string>& names = device_names();
+  return run_tandem(words("diff {} --a {} --b {} --size 16x8 --spp 2 " + more, {scene, names.front(), names.back()}),
+                    {.folder = folder.path()});
 }
 
 nlohmann::json read_json(const std::filesystem::path& path) { return nlohmann::json::parse(read_text(path)); }
 
 TEST_CASE("a run agrees with the stored one in every bit, and what changed since is told") {
-  const TemporaryFolder folder;
-  REQUIRE(diff(folder, scenes + "cornell_box.obj", {"--out", "run"}).exit_code == 0);
-  const Outcome same = diff(folder, scenes + "cornell_box.obj", {"--baseline", "run", "--json", "x.json"});
+  const ScratchFolder folder;
+  REQUIRE(diff(folder, scenes + "cornell_box.obj", "--out run").exit_code == 0);
+  const Outcome same = diff(folder, scenes + "cornell_box.obj", "--baseline run --json x.json");
   CHECK(same.errors == "");
   CHECK(same.exit_code == 0);
   CHECK(same.output.find("changed           nothing\n") != std::string::npos);
@@ -43,7 +43,7 @@ TEST_CASE("a run agrees with the stored one in every bit, and what changed since
   report["device_b"]["driver"] = "an older one";
   report["ms_a"] = 12345.0;
   write_text(folder.path() / "run/diff.json", report.dump());
-  const Outcome later = diff(folder, scenes + "cornell_box.obj", {"--baseline", "run", "--json", "x.json"});
+  const Outcome later = diff(folder, scenes + "cornell_box.obj", "--baseline run --json x.json");
   CHECK(later.exit_code == 0);
   baseline = read_json(folder.path() / "x.json").at("baseline");
   REQUIRE(baseline.at("changes").size() == 1);
@@ -55,13 +55,12 @@ TEST_CASE("a run agrees with the stored one in every bit, and what changed since
 }
 
 TEST_CASE("a picture that is no longer the stored one is exit code 1, and it is said whose") {
-  const TemporaryFolder folder;
-  REQUIRE(diff(folder, scenes + "cornell_box.obj", {"--out", "run"}).exit_code == 0);
+  const ScratchFolder folder;
+  REQUIRE(diff(folder, scenes + "cornell_box.obj", "--out run").exit_code == 0);
   pathtracer::Image image = pathtracer::read_image(folder.path() / "run/b.exr");
   for (glm::vec3& pixel : image.pixels) pixel.y += 0.25f;
   pathtracer::write_image(folder.path() / "run/b.exr", image, {});
-  const Outcome outcome =
-      diff(folder, scenes + "cornell_box.obj", {"--baseline", "run", "--json", "x.json", "--junit", "x.xml"});
+  const Outcome outcome = diff(folder, scenes + "cornell_box.obj", "--baseline run --json x.json --junit x.xml");
   CHECK(outcome.exit_code == 1);
   const nlohmann::json json = read_json(folder.path() / "x.json");
   CHECK(json.at("verdict") == "agree");  // of a and b today
@@ -74,56 +73,54 @@ TEST_CASE("a picture that is no longer the stored one is exit code 1, and it is 
 }
 
 TEST_CASE("the stored run of another job is refused before anything is rendered") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::filesystem::copy_file(scenes + "cornell_box.obj", folder.path() / "box.obj");
   std::filesystem::copy_file(scenes + "cornell_box.mtl", folder.path() / "cornell_box.mtl");
-  REQUIRE(diff(folder, "box.obj", {"--out", "run"}).exit_code == 0);
-  const auto refusal = [&](const std::string& scene, const std::vector<std::string>& more) {
-    std::vector<std::string> words = {"--baseline", "run"};
-    words.insert(words.end(), more.begin(), more.end());
-    const Outcome outcome = diff(folder, scene, words);
+  REQUIRE(diff(folder, "box.obj", "--out run").exit_code == 0);
+  const auto refusal = [&](const std::string& scene, const std::string& more) {
+    const Outcome outcome = diff(folder, scene, "--baseline run " + more);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.output == "");
     return outcome.errors;
   };
   const std::string start = "tandem: the run in 'run' cannot be the baseline: ";
-  CHECK(refusal("box.obj", {"--seed", "3"}) == start + "its seed is 0, not 3\n");
-  CHECK(refusal("box.obj", {"--sampler", "sobol"}) == start + "its sampler is independent, not sobol\n");
-  CHECK(refusal("box.obj", {"--lens-radius", "2"}).find("its lens_radius is 0.0, not 2.0") != std::string::npos);
-  CHECK(refusal("box.obj", {"--background", "1,0,0"}).find("its background is") != std::string::npos);
-  const Outcome statistical = diff(folder, "box.obj", {"--baseline", "run", "--tier", "statistical"});
+  CHECK(refusal("box.obj", "--seed 3") == start + "its seed is 0, not 3\n");
+  CHECK(refusal("box.obj", "--sampler sobol") == start + "its sampler is independent, not sobol\n");
+  CHECK(refusal("box.obj", "--lens-radius 2").find("its lens_radius is 0.0, not 2.0") != std::string::npos);
+  CHECK(refusal("box.obj", "--background 1,0,0").find("its background is") != std::string::npos);
+  const Outcome statistical = diff(folder, "box.obj", "--baseline run --tier statistical");
   CHECK(statistical.exit_code == 2);
   CHECK(statistical.errors ==
         "tandem: --baseline cannot be combined with --tier statistical: its images have other samples\n");
   // What a file that the scene's file names says, counts too.
-  CHECK(diff(folder, "box.obj", {"--baseline", "run"}).exit_code == 0);
+  CHECK(diff(folder, "box.obj", "--baseline run").exit_code == 0);
   std::string materials = read_text(folder.path() / "cornell_box.mtl");
   const std::size_t at = materials.find("Kd 0.63");
   REQUIRE(at != std::string::npos);
   materials.replace(at, 7, "Kd 0.64");
   write_text(folder.path() / "cornell_box.mtl", materials);
-  CHECK(refusal("box.obj", {}) == start + "the content of box.obj has changed since\n");
+  CHECK(refusal("box.obj", "") == start + "the content of box.obj has changed since\n");
 }
 
 TEST_CASE("a folder without a whole run is no baseline") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string box = scenes + "cornell_box.obj";
-  const auto refusal = [&](const std::vector<std::string>& more) {
+  const auto refusal = [&](const std::string& more) {
     const Outcome outcome = diff(folder, box, more);
     CHECK(outcome.exit_code == 2);
     return outcome.errors;
   };
   const std::string start = "tandem: 'run' does not hold a run of 'tandem diff --out': ";
-  CHECK(refusal({"--baseline", "run"}) == start + "cannot read 'run/diff.json': it does not exist\n");
-  REQUIRE(diff(folder, box, {"--out", "run"}).exit_code == 0);
-  CHECK(refusal({"--baseline", "run", "--out", "./run"}) ==
+  CHECK(refusal("--baseline run") == start + "cannot read 'run/diff.json': it does not exist\n");
+  REQUIRE(diff(folder, box, "--out run").exit_code == 0);
+  CHECK(refusal("--baseline run --out ./run") ==
         "tandem: --out and --baseline are both './run': the baseline would be overwritten\n");
   std::filesystem::remove(folder.path() / "run/b.exr");
-  CHECK(refusal({"--baseline", "run"}).find(start) == 0);
+  CHECK(refusal("--baseline run").find(start) == 0);
   write_text(folder.path() / "run/diff.json", "{}");
-  CHECK(refusal({"--baseline", "run"}).find(start + "diff.json: ") == 0);
+  CHECK(refusal("--baseline run").find(start + "diff.json: ") == 0);
   write_text(folder.path() / "run/diff.json", R"({"settings": 3, "device_a": {}, "device_b": {}})");
-  CHECK(refusal({"--baseline", "run"}) == start + "'settings' of diff.json is not an object\n");
+  CHECK(refusal("--baseline run") == start + "'settings' of diff.json is not an object\n");
 }
 
 }  // namespace

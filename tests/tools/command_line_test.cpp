@@ -1,45 +1,70 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
 
 const std::string box = TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj";
 
+/// The commands that a help text lists, one to a line, between "Subcommands:" and an empty line.
+std::vector<std::string> listed_commands(const std::string& help) {
+  std::vector<std::string> commands;
+  std::istringstream lines(help.substr(help.find("Subcommands:\n")));
+  std::string line;
+  std::getline(lines, line);
+  while (std::getline(lines, line) && !line.empty()) commands.push_back(words(line).at(0));
+  return commands;
+}
+
 TEST_CASE("every command explains itself and all its options") {
-  const std::vector<std::pair<std::string, std::vector<std::string>>> commands = {
-      {"devices", {"--json"}},
-      {"render",
-       {"SCENE", "--output", "--device", "--size", "--spp", "--depth", "--seed", "--camera-position", "--camera-target",
-        "--fov", "--background", "--threads", "--validation", "Examples"}},
+  const std::string image =
+      " --size --spp --depth --seed --camera --camera-position --camera-target --fov --view-height --lens-radius "
+      "--focus-distance --background --integrator --sampler --nee --mis --bsdf-sampling --roulette --max-diffuse-depth "
+      "--max-glossy-depth --max-specular-depth --clamp-direct --clamp-indirect --occlusion-length --threads --trace "
+      "--validation --allow-missing-mtl";
+  const std::string thresholds = " --tier --min-within-1e3 --min-bit-equal --max-mean-difference --max-non-finite";
+  const std::map<std::string, std::string> options = {
+      {"devices", "--json"},
+      {"render", "SCENE --output --device Examples" + image},
       {"diff",
-       {"SCENE", "--a", "--b", "--json", "--out", "--size", "--spp", "--depth", "--seed", "--camera-position",
-        "--min-within-1e3", "--min-bit-equal", "--max-mean-difference", "--max-non-finite", "Exit code", "Examples"}},
-      {"generate", {"--triangles", "--output", "Example"}},
-      {"conformance",
-       {"--device", "--require-devices", "--filter", "--list", "--full", "--json", "--markdown", "Exit code"}},
-      {"bench", {"SCENE", "--device", "--repeat", "--json", "--size", "--spp", "Example"}}};
-  const Outcome overview = run_tandem({"--help"});
+       "SCENE --a --b --json --junit --out --report --baseline --metrics --classify --classify-pixels --survey "
+       "--arbiter "
+       "--probe --probe-rays --trace-a --trace-b --min-p-value Exit Examples" +
+           image + thresholds},
+      {"explain",
+       "SCENE --pixel --sample --a --b --arbiter --trace-a --trace-b --all-events --probe --json Exit Examples" +
+           image},
+      {"generate", "--triangles --output Example"},
+      {"gallery", "LIST --out --device --only --size --spp --threads Exit Examples"},
+      {"bench", "SCENE --device --repeat --json Example" + image},
+      {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},
+      {"study", "sampling Exit"},
+      {"matrix", "SCENE --device --json Exit Example" + image + thresholds},
+      {"suite", "FILE --out --fresh --json --junit --threads --validation Exit Examples"}};
+  const Outcome overview = run_tandem("--help");
   CHECK(overview.exit_code == 0);
-  for (const auto& entry : commands) {
-    const auto& [command, words] = entry;
-    CAPTURE(entry.first);
-    CHECK(overview.output.find("\n  " + command) != std::string::npos);
-    const Outcome help = run_tandem({command, "--help"});
+  const std::vector<std::string> commands = listed_commands(overview.output);
+  CHECK(commands.size() == options.size());
+  for (const std::string& command : commands) {
+    CAPTURE(command);
+    REQUIRE(options.contains(command));
+    const Outcome help = run_tandem(command + " --help");
     CHECK(help.exit_code == 0);
     CHECK(help.errors.empty());
-    for (const std::string& word : words) {
+    for (const std::string& word : words(options.at(command))) {
       CAPTURE(word);
       CHECK(help.output.find(word) != std::string::npos);
     }
   }
-  CHECK(run_tandem({"--version"}).output == "tandem " TANDEM_VERSION "\n");
+  CHECK(run_tandem("--version").output == "tandem " TANDEM_VERSION "\n");
 }
 
 struct BadCommandLine {
@@ -103,31 +128,28 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
       {{"generate", "--triangles", "3", "-o", "x.obj"}, "--triangles: '3' is not a whole number"},
       {{"generate", "--triangles", "100", "-o", "missing/x.obj"}, "missing"},
   };
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   for (const BadCommandLine& line : bad) {
     std::string words;
     for (const std::string& word : line.arguments) words += word + " ";
     CAPTURE(words);
     const Outcome outcome = run_tandem(line.arguments, {.folder = folder.path()});
+    CAPTURE(outcome.errors);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.output.empty());
     CHECK(outcome.errors.starts_with("tandem: "));
     CHECK(std::count(outcome.errors.begin(), outcome.errors.end(), '\n') == 1);
     CHECK(outcome.errors.find(line.sentence) != std::string::npos);
-    CAPTURE(outcome.errors);
     CHECK(folder.names().empty());
   }
 }
 
 TEST_CASE("without a Vulkan driver the error is one sentence, and the CPU device works") {
-  const TemporaryFolder folder;
-  setenv("VK_DRIVER_FILES", "/nonexistent", 1);
-  setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
-  const Outcome vulkan = run_tandem({"render", box, "-o", "x.png", "--device", "vulkan"}, {.folder = folder.path()});
-  const Outcome cpu =
-      run_tandem({"render", box, "-o", "x.png", "--size", "8x8", "--spp", "1"}, {.folder = folder.path()});
-  unsetenv("VK_DRIVER_FILES");
-  unsetenv("VK_ICD_FILENAMES");
+  const ScratchFolder folder;
+  const ProcessOptions options = {.folder = folder.path(),
+                                  .environment = {"VK_DRIVER_FILES=/nonexistent", "VK_ICD_FILENAMES=/nonexistent"}};
+  const Outcome vulkan = run_tandem(words("render {} -o x.png --device vulkan", {box}), options);
+  const Outcome cpu = run_tandem(words("render {} -o x.png --size 8x8 --spp 1", {box}), options);
   CHECK(vulkan.exit_code == 2);
   CHECK(vulkan.errors == "tandem: no Vulkan driver is installed\n");
   CHECK(cpu.exit_code == 0);
@@ -135,7 +157,7 @@ TEST_CASE("without a Vulkan driver the error is one sentence, and the CPU device
 }
 
 TEST_CASE("a scene that cannot be used is one sentence and exit code 2") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::vector<std::pair<std::string, std::string>> scenes = {
       {"empty.obj", ""},
       {"no_triangles.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"},
@@ -146,7 +168,7 @@ TEST_CASE("a scene that cannot be used is one sentence and exit code 2") {
     const auto& [name, text] = scene;
     CAPTURE(scene.first);
     write_text(folder.path() / name, text);
-    const Outcome outcome = run_tandem({"render", name, "-o", "x.png"}, {.folder = folder.path()});
+    const Outcome outcome = run_tandem(words("render {} -o x.png", {name}), {.folder = folder.path()});
     CAPTURE(outcome.errors);
     CHECK(outcome.exit_code == 2);
     CHECK(outcome.errors.find(name) != std::string::npos);

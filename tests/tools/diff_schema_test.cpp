@@ -9,7 +9,8 @@
 
 #include "tests/pathtracer/load/description/json_schema.hpp"
 #include "tests/support/device_test.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
@@ -23,7 +24,7 @@ const JsonSchema& schema() {
   return document;
 }
 
-Json diff(const TemporaryFolder& folder, const std::vector<std::string>& more) {
+Json diff(const ScratchFolder& folder, const std::vector<std::string>& more) {
   const std::vector<std::string> names = device_names();
   std::vector<std::string> words = {"diff",       box,      "--a",   names.front(), "--b",
                                     names.back(), "--size", "16x16", "--json",      "x.json"};
@@ -53,7 +54,7 @@ std::vector<std::string> undescribed(const Json& report) {
 }
 
 TEST_CASE("the schema accepts diff.json with metrics, classes, probes and a baseline, and describes every member") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   diff(folder, {"--spp", "1", "--out", "run"});
   const Json report = diff(
       folder, {"--spp", "1", "--metrics", "all", "--classify", "--probe", "--probe-rays", "50", "--baseline", "run"});
@@ -63,7 +64,7 @@ TEST_CASE("the schema accepts diff.json with metrics, classes, probes and a base
 }
 
 TEST_CASE("the schema accepts diff.json of tier statistical, and describes every member") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Json report = diff(folder, {"--spp", "16", "--tier", "statistical"});
   CHECK(schema().accepts(report));
   CHECK(undescribed(report) == std::vector<std::string>{});
@@ -71,7 +72,7 @@ TEST_CASE("the schema accepts diff.json of tier statistical, and describes every
 }
 
 TEST_CASE("the schema refuses diff.json without one of its required members, or of another format") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const Json report = diff(folder, {"--spp", "1"});
   REQUIRE(schema().accepts(report));
   for (const Json& key : schema().root().at("required")) {

@@ -7,25 +7,24 @@
 
 #include "pathtracer/image/image_io.hpp"
 #include "tests/support/device_test.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
 
 const std::string gallery = TANDEM_SOURCE_DIRECTORY "/scenes/gallery.json";
 
-std::vector<std::string> arguments(const std::string& list, const std::vector<std::string>& more) {
-  const std::vector<std::string> names = device_names();
-  std::vector<std::string> words = {"gallery", list, "--out", "out", "--device", names.front(), names.back()};
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
+std::vector<std::string> arguments(const std::string& list, const std::string& more) {
+  const std::vector<std::string>& names = device_names();
+  return words("gallery {} --out out --device {} {} " + more, {list, names.front(), names.back()});
 }
 
 }  // namespace
 
 TEST_CASE("gallery renders every scene that ships, alike on two devices, into a page") {
-  const TemporaryFolder folder;
-  const Outcome outcome = run_tandem(arguments(gallery, {"--size", "24x24", "--spp", "1"}), {.folder = folder.path()});
+  const ScratchFolder folder;
+  const Outcome outcome = run_tandem(arguments(gallery, "--size 24x24 --spp 1"), {.folder = folder.path()});
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.errors == "");
   const nlohmann::json listed = nlohmann::json::parse(read_text(gallery)).at("scenes");
@@ -53,22 +52,22 @@ TEST_CASE("gallery renders every scene that ships, alike on two devices, into a 
 }
 
 TEST_CASE("gallery says what is wrong with a list, and makes pictures small") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string box = TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj";
-  const auto run = [&](const std::string& text, const std::vector<std::string>& more) {
+  const auto run = [&](const std::string& text, const std::string& more) {
     write_text(folder.path() / "list.json", text);
     return run_tandem(arguments("list.json", more), {.folder = folder.path()});
   };
   const auto list = [&](const std::string& entry) {
     return R"({"scenes": [{"file": ")" + box + R"(", "title": "box")" + entry + "}]}";
   };
-  const std::vector<std::string> tiny = {"--size", "8x8", "--spp", "1"};
+  const std::string tiny = "--size 8x8 --spp 1";
   CHECK(run(list(R"(, "spp": 5)"), tiny).errors.find("scenes[0].spp is not known") != std::string::npos);
-  CHECK(run(list(""), {"--only", "teapot"}).errors == "tandem: list.json lists no scene 'teapot'\n");
+  CHECK(run(list(""), "--only teapot").errors == "tandem: list.json lists no scene 'teapot'\n");
   CHECK(run(R"({"scenes": []})", tiny).exit_code == 2);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
 
-  const Outcome good = run(list(""), {"--size", "300x8", "--spp", "1", "--only", "cornell_box"});
+  const Outcome good = run(list(""), "--size 300x8 --spp 1 --only cornell_box");
   CHECK(good.exit_code == 0);
   // Halved, so that no side is longer than 256.
   CHECK(pathtracer::read_image(folder.path() / "out/images/gallery/cornell_box.png").width == 150);

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -61,11 +62,10 @@ TEST_CASE("JUnit keeps any text that XML can hold, and marks what it cannot") {
 }
 
 TEST_CASE("diff writes its verdict as JUnit") {
-  const test::TemporaryFolder folder;
-  const test::Outcome outcome =
-      test::run_tandem({"diff", TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj", "--a", "cpu", "--b", "cpu", "--size",
-                        "8x8", "--spp", "1", "--junit", "x.xml"},
-                       {.folder = folder.path()});
+  const test::ScratchFolder folder;
+  const test::Outcome outcome = test::run_tandem(test::words("diff {} --a cpu --b cpu --size 8x8 --spp 1 --junit x.xml",
+                                                             {TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj"}),
+                                                 {.folder = folder.path()});
   CHECK(outcome.exit_code == 0);
   const pugi::xml_document document = parse(test::read_text(folder.path() / "x.xml"));
   const pugi::xml_node node = document.child("testsuites").child("testsuite").child("testcase");

@@ -3,7 +3,8 @@
 #include <stdexcept>
 
 #include "base/error.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/report/spread.hpp"
 
@@ -20,7 +21,7 @@ TEST_CASE("the median of an odd and an even number of values") {
 }
 
 TEST_CASE("a result that can no longer be written is saved elsewhere, and the sentence says where") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   // As when the folder went between the check and the write.
   const std::vector<OutputFile> files = {
       {folder.path() / "good.txt", [](const std::filesystem::path& path) { write_text(path, "good"); }},
@@ -50,7 +51,7 @@ TEST_CASE("a result that cannot be written anywhere is an error with both reason
 }
 
 TEST_CASE("a folder for results goes again unless something was written into it") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   { const OutputFolder unused(folder.path() / "unused"); }
   CHECK(folder.names().empty());
   {
@@ -63,7 +64,7 @@ TEST_CASE("a folder for results goes again unless something was written into it"
 }
 
 TEST_CASE("texts are written whole, over what was there") {
-  const test::TemporaryFolder folder;
+  const test::ScratchFolder folder;
   write_text(folder.path() / "x.txt", "a long first text");
   write_text(folder.path() / "x.txt", "second");
   CHECK(test::read_text(folder.path() / "x.txt") == "second");

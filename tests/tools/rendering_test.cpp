@@ -9,7 +9,8 @@
 
 #include "pathtracer/image/image_io.hpp"
 #include "tests/support/device_test.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
@@ -17,9 +18,9 @@ namespace {
 const std::string box = TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj";
 
 TEST_CASE("devices lists every device under test, for people and for programs") {
-  const Outcome text = run_tandem({"devices"});
+  const Outcome text = run_tandem("devices");
   CHECK(text.exit_code == 0);
-  const Outcome json = run_tandem({"devices", "--json"});
+  const Outcome json = run_tandem("devices --json");
   CHECK(json.exit_code == 0);
   const nlohmann::json devices = nlohmann::json::parse(json.output);
   REQUIRE(devices.is_array());
@@ -39,38 +40,35 @@ TEST_CASE("devices lists every device under test, for people and for programs") 
   }
 }
 
-TEST_CASE("render writes the picture that was asked for, with its settings") {
-  for (const std::string& device : device_names()) {
-    CAPTURE(device);
-    const TemporaryFolder folder;
-    for (const std::string file : {"x.exr", "x.png"}) {
-      const Outcome outcome = run_tandem({"render", box, "--device", device, "--size", "24x16", "--spp", "4", "--depth",
-                                          "4", "--seed", "7", "-o", file},
-                                         {.folder = folder.path()});
-      CHECK(outcome.errors == "");
-      REQUIRE(outcome.exit_code == 0);
-      CHECK(outcome.output.find(file) == 0);
-      pathtracer::ImageMetadata metadata;
-      const pathtracer::Image image = pathtracer::read_image(folder.path() / file, &metadata);
-      CHECK(image.width == 24);
-      CHECK(image.height == 16);
-      double sum = 0.0;
-      for (const glm::vec3& pixel : image.pixels) sum += pixel.x;
-      CHECK(sum > 0.0);
-      CHECK(metadata["samples"] == "4");
-      CHECK(metadata["seed"] == "7");
-    }
-    CHECK(folder.names() == std::vector<std::string>{"x.exr", "x.png"});
+TANDEM_DEVICE_TEST("render writes the picture that was asked for, with its settings") {
+  const ScratchFolder folder;
+  for (const std::string file : {"x.exr", "x.png"}) {
+    const Outcome outcome = run_tandem(
+        words("render {} --device {} --size 24x16 --spp 4 --depth 4 --seed 7 -o {}", {box, device_name, file}),
+        {.folder = folder.path()});
+    CHECK(outcome.errors == "");
+    REQUIRE(outcome.exit_code == 0);
+    CHECK(outcome.output.find(file) == 0);
+    pathtracer::ImageMetadata metadata;
+    const pathtracer::Image image = pathtracer::read_image(folder.path() / file, &metadata);
+    CHECK(image.width == 24);
+    CHECK(image.height == 16);
+    double sum = 0.0;
+    for (const glm::vec3& pixel : image.pixels) sum += pixel.x;
+    CHECK(sum > 0.0);
+    CHECK(metadata["samples"] == "4");
+    CHECK(metadata["seed"] == "7");
   }
+  CHECK(folder.names() == std::vector<std::string>{"x.exr", "x.png"});
 }
 
 TEST_CASE("the camera and background options reach the picture") {
   // From a metre in front of the box's opening, away from it: nothing but background.
-  const TemporaryFolder folder;
-  const Outcome outcome =
-      run_tandem({"render", box, "--size", "8x8", "--spp", "1", "--background", "0.25,0.5,0.75", "--camera-position",
-                  "278,273,-1000", "--camera-target", "278,273,-2000", "--fov", "20", "-o", "x.exr"},
-                 {.folder = folder.path()});
+  const ScratchFolder folder;
+  const Outcome outcome = run_tandem(words("render {} --size 8x8 --spp 1 --background 0.25,0.5,0.75 --camera-position "
+                                           "278,273,-1000 --camera-target 278,273,-2000 --fov 20 -o x.exr",
+                                           {box}),
+                                     {.folder = folder.path()});
   REQUIRE(outcome.exit_code == 0);
   for (const glm::vec3& pixel : pathtracer::read_image(folder.path() / "x.exr").pixels) {
     CHECK(pixel == glm::vec3(0.25F, 0.5F, 0.75F));
@@ -78,37 +76,35 @@ TEST_CASE("the camera and background options reach the picture") {
 }
 
 TEST_CASE("the camera may look straight down") {
-  const TemporaryFolder folder;
-  const Outcome outcome = run_tandem({"render", box, "--size", "8x8", "--spp", "1", "--camera-position", "278,400,280",
-                                      "--camera-target", "278,0,280", "-o", "x.exr"},
-                                     {.folder = folder.path()});
+  const ScratchFolder folder;
+  const Outcome outcome = run_tandem(
+      words("render {} --size 8x8 --spp 1 --camera-position 278,400,280 --camera-target 278,0,280 -o x.exr", {box}),
+      {.folder = folder.path()});
   CHECK(outcome.errors == "");
   CHECK(outcome.exit_code == 0);
 }
 
 TEST_CASE("a missing MTL file is an error, unless it is allowed") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   std::ofstream(folder.path() / "grey.obj") << "mtllib absent.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n";
-  const std::vector<std::string> arguments = {"render", "grey.obj", "--size", "8x8", "--spp", "1", "-o", "grey.png"};
-  const Outcome refused = run_tandem(arguments, {.folder = folder.path()});
+  const std::string line = "render grey.obj --size 8x8 --spp 1 -o grey.png";
+  const Outcome refused = run_tandem(line, {.folder = folder.path()});
   CHECK(refused.exit_code == 2);
   CHECK(refused.errors.find("absent.mtl") != std::string::npos);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "grey.png"));
 
-  std::vector<std::string> allowing = arguments;
-  allowing.push_back("--allow-missing-mtl");
-  const Outcome allowed = run_tandem(allowing, {.folder = folder.path()});
+  const Outcome allowed = run_tandem(line + " --allow-missing-mtl", {.folder = folder.path()});
   CHECK(allowed.exit_code == 0);
   CHECK(allowed.errors.find("absent.mtl") != std::string::npos);
   CHECK(std::filesystem::exists(folder.path() / "grey.png"));
 }
 
 TEST_CASE("diff of both forms of tracing on a device agrees in every bit") {
-  const TemporaryFolder folder;
-  const Outcome outcome =
-      run_tandem({"diff", box, "--a", "cpu", "--b", "cpu", "--trace", "query", "--trace-b", "pipeline", "--size",
-                  "32x24", "--spp", "2", "--json", "x.json", "--min-bit-equal", "1"},
-                 {.folder = folder.path()});
+  const ScratchFolder folder;
+  const Outcome outcome = run_tandem(words("diff {} --a cpu --b cpu --trace query --trace-b pipeline --size 32x24 "
+                                           "--spp 2 --json x.json --min-bit-equal 1",
+                                           {box}),
+                                     {.folder = folder.path()});
   CHECK(outcome.errors == "");
   REQUIRE(outcome.exit_code == 0);
   const nlohmann::json json = nlohmann::json::parse(read_text(folder.path() / "x.json"));
@@ -118,11 +114,11 @@ TEST_CASE("diff of both forms of tracing on a device agrees in every bit") {
 }
 
 TEST_CASE("diff of a device with itself agrees in every bit, and writes all that it promises") {
-  const TemporaryFolder folder;
-  const Outcome outcome =
-      run_tandem({"diff", box, "--a", "cpu", "--b", "cpu", "--size", "32x24", "--spp", "2", "--json", "deep/diff.json",
-                  "--out", "deep", "--min-bit-equal", "1", "--metrics", "all"},
-                 {.folder = folder.path()});
+  const ScratchFolder folder;
+  const Outcome outcome = run_tandem(words("diff {} --a cpu --b cpu --size 32x24 --spp 2 --json deep/diff.json --out "
+                                           "deep --min-bit-equal 1 --metrics all",
+                                           {box}),
+                                     {.folder = folder.path()});
   CHECK(outcome.errors == "");
   REQUIRE(outcome.exit_code == 0);
   CHECK(outcome.output.find("verdict           agree\n") != std::string::npos);
@@ -173,7 +169,7 @@ TEST_CASE("diff of a device with itself agrees in every bit, and writes all that
 TEST_CASE("diff of the devices under test agrees") {
   const std::vector<std::string>& devices = device_names();
   const Outcome outcome = run_tandem(
-      {"diff", box, "--a", devices.front(), "--b", devices.back(), "--size", "48x48", "--spp", "4", "--validation"});
+      words("diff {} --a {} --b {} --size 48x48 --spp 4 --validation", {box, devices.front(), devices.back()}));
   CHECK(outcome.errors == "");
   CAPTURE(outcome.output);
   CHECK(outcome.exit_code == 0);
@@ -181,12 +177,11 @@ TEST_CASE("diff of the devices under test agrees") {
 
 TEST_CASE("images that do not agree are exit code 1 with the reason") {
   // Radiance so large that the sum of two samples is infinite wherever the camera sees the emitter.
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_text(folder.path() / "sun.mtl", "newmtl sun\nKe 3e38 3e38 3e38\n");
   write_text(folder.path() / "sun.obj", "mtllib sun.mtl\nusemtl sun\nv -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n");
   const Outcome outcome =
-      run_tandem({"diff", "sun.obj", "--a", "cpu", "--b", "cpu", "--size", "8x8", "--spp", "4", "--json", "diff.json"},
-                 {.folder = folder.path()});
+      run_tandem("diff sun.obj --a cpu --b cpu --size 8x8 --spp 4 --json diff.json", {.folder = folder.path()});
   CAPTURE(outcome.output);
   CHECK(outcome.exit_code == 1);
   CHECK(outcome.output.find("verdict           differ\n") != std::string::npos);
@@ -198,25 +193,23 @@ TEST_CASE("images that do not agree are exit code 1 with the reason") {
 }
 
 TEST_CASE("generate writes a scene of about the size asked for, which renders") {
-  const TemporaryFolder folder;
-  const Outcome outcome = run_tandem({"generate", "--triangles", "5000", "-o", "many.obj"}, {.folder = folder.path()});
+  const ScratchFolder folder;
+  const Outcome outcome = run_tandem("generate --triangles 5000 -o many.obj", {.folder = folder.path()});
   CHECK(outcome.exit_code == 0);
   CHECK(folder.names() == std::vector<std::string>{"many.mtl", "many.obj"});
   const int triangles = std::stoi(outcome.output.substr(outcome.output.find(": ") + 2));
   CHECK(triangles >= 4900);  // within 2 %, as generate_spheres promises
   CHECK(triangles <= 5100);
-  const Outcome rendered =
-      run_tandem({"render", "many.obj", "--size", "16x16", "--spp", "1", "-o", "x.png"}, {.folder = folder.path()});
+  const Outcome rendered = run_tandem("render many.obj --size 16x16 --spp 1 -o x.png", {.folder = folder.path()});
   CHECK(rendered.errors == "");
   CHECK(rendered.exit_code == 0);
 }
 
 TEST_CASE("bench measures every device in every round") {
-  const TemporaryFolder folder;
-  std::vector<std::string> arguments = {"bench", "--device", "cpu",      box, "--size", "16x16",
-                                        "--spp", "1",        "--repeat", "3", "--json", "bench.json"};
-  for (const std::string& name : device_names()) arguments.insert(arguments.end(), {"--device", name});
-  const Outcome outcome = run_tandem(arguments, {.folder = folder.path()});
+  const ScratchFolder folder;
+  std::string line = "bench --device cpu {} --size 16x16 --spp 1 --repeat 3 --json bench.json";
+  for (const std::string& name : device_names()) line += " --device " + name;
+  const Outcome outcome = run_tandem(words(line, {box}), {.folder = folder.path()});
   CHECK(outcome.errors == "");
   REQUIRE(outcome.exit_code == 0);
   const nlohmann::json json = nlohmann::json::parse(read_text(folder.path() / "bench.json"));
@@ -233,35 +226,32 @@ TEST_CASE("bench measures every device in every round") {
   }
 }
 
-TEST_CASE("an interrupt ends a long rendering soon and leaves nothing") {
-  for (const std::string& device : device_names()) {
-    CAPTURE(device);
-    const TemporaryFolder folder;
-    const Outcome outcome =
-        run_tandem({"diff", box, "--a", device, "--b", device, "--spp", "16777216", "--json", "x.json", "--out", "new"},
-                   {.folder = folder.path(), .interrupt_after_ms = 3000});
-    CHECK(outcome.exit_code == 130);
-    CHECK(outcome.output.empty());
-    CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
-    CHECK(folder.names().empty());
-  }
+TANDEM_DEVICE_TEST("an interrupt ends a long rendering soon and leaves nothing") {
+  const ScratchFolder folder;
+  const Outcome outcome =
+      run_tandem(words("diff {} --a {} --b {} --spp 16777216 --json x.json --out new", {box, device_name, device_name}),
+                 {.folder = folder.path(), .interrupt_after_ms = 3000});
+  CHECK(outcome.exit_code == 130);
+  CHECK(outcome.output.empty());
+  CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
+  CHECK(folder.names().empty());
 }
 
 TEST_CASE("an interrupt ends the generation of a large scene and leaves nothing") {
-  const TemporaryFolder folder;
-  const Outcome outcome = run_tandem({"generate", "--triangles", "100000000", "-o", "x.obj"},
-                                     {.folder = folder.path(), .interrupt_after_ms = 3000});
+  const ScratchFolder folder;
+  const Outcome outcome =
+      run_tandem("generate --triangles 100000000 -o x.obj", {.folder = folder.path(), .interrupt_after_ms = 3000});
   CHECK(outcome.exit_code == 130);
   CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
   CHECK(folder.names().empty());
 }
 
 TEST_CASE("results that no disk takes are still printed, and no half file stays") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   // Enough for no image of noise of 64x64 pixels, nor for the JSON.
-  const Outcome outcome = run_tandem(
-      {"diff", box, "--a", "cpu", "--b", "cpu", "--size", "64x64", "--spp", "1", "--json", "x.json", "--out", "new"},
-      {.folder = folder.path(), .file_size_limit = 256});
+  const Outcome outcome =
+      run_tandem(words("diff {} --a cpu --b cpu --size 64x64 --spp 1 --json x.json --out new", {box}),
+                 {.folder = folder.path(), .file_size_limit = 256});
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.output.find("verdict           agree\n") != std::string::npos);
   CHECK(outcome.errors.find("cannot write 'x.json': File too large; nor could it be saved elsewhere") !=

@@ -4,7 +4,8 @@
 #include <string>
 
 #include "tests/support/device_test.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
@@ -20,11 +21,12 @@ std::string embedded(const std::string& page, const std::string& id) {
 }
 
 TEST_CASE("--report writes a page that holds the very numbers of --json") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::vector<std::string> names = device_names();
-  const Outcome outcome = run_tandem({"diff", box, "--a", names.front(), "--b", names.back(), "--size", "16x8", "--spp",
-                                      "2", "--report", "new/report", "--json", "x.json"},
-                                     {.folder = folder.path()});
+  const Outcome outcome =
+      run_tandem(words("diff {} --a {} --b {} --size 16x8 --spp 2 --report new/report --json x.json",
+                       {box, names.front(), names.back()}),
+                 {.folder = folder.path()});
   CHECK(outcome.errors == "");
   REQUIRE(outcome.exit_code == 0);
   const std::string page = read_text(folder.path() / "new/report/index.html");
@@ -39,10 +41,10 @@ TEST_CASE("--report writes a page that holds the very numbers of --json") {
 }
 
 TEST_CASE("a device against itself has no pixel to look at, and no path is recorded") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string device = device_names().front();
   const Outcome outcome =
-      run_tandem({"diff", box, "--a", device, "--b", device, "--size", "16x8", "--spp", "2", "--report", "report"},
+      run_tandem(words("diff {} --a {} --b {} --size 16x8 --spp 2 --report report", {box, device, device}),
                  {.folder = folder.path()});
   REQUIRE(outcome.exit_code == 0);
   const auto data = nlohmann::json::parse(embedded(read_text(folder.path() / "report/index.html"), "data"));
@@ -51,10 +53,10 @@ TEST_CASE("a device against itself has no pixel to look at, and no path is recor
 }
 
 TEST_CASE("a folder for the report that cannot be made is an error before anything is rendered") {
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   write_text(folder.path() / "file", "");
-  const Outcome outcome = run_tandem({"diff", box, "--a", device_names().front(), "--b", device_names().front(),
-                                      "--size", "16x8", "--spp", "1", "--report", "file/report"},
+  const Outcome outcome = run_tandem(words("diff {} --a {} --b {} --size 16x8 --spp 1 --report file/report",
+                                           {box, device_names().front(), device_names().front()}),
                                      {.folder = folder.path()});
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.output == "");

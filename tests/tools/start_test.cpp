@@ -12,7 +12,8 @@
 #include <string_view>
 
 #include "pathtracer/image/image_io.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 // A program of its own, because what one test has loaded stays loaded for the others.
 
@@ -69,7 +70,7 @@ TEST_CASE("the first picture loads what pictures need, and no earlier code start
           doctest::skip(!TANDEM_LOADS_IMAGE_LIBRARY)) {
   CHECK(!is_mapped("libOpenImageIO"));
   CHECK(thread_count() == 1);
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   pathtracer::Image image{2, 1, {glm::vec3(0.25f), glm::vec3(4)}};
   pathtracer::write_image(folder.path() / "a.exr", image, {});
   CHECK(is_mapped("libOpenImageIO"));
@@ -79,7 +80,7 @@ TEST_CASE("the first picture loads what pictures need, and no earlier code start
 TEST_CASE("without the library for pictures, rendering one is refused at once and in one sentence; the rest works" *
           doctest::skip(!TANDEM_LOADS_IMAGE_LIBRARY)) {
   const Variable missing("TANDEM_IMAGE_CODEC", "/nowhere/codec.so");
-  const TemporaryFolder folder;
+  const ScratchFolder folder;
   const std::string picture = (folder.path() / "a.png").string();
   const Outcome render =
       run_tandem({"render", TANDEM_SOURCE_DIRECTORY "/scenes/cornell_box.obj", "--device", "nothing", "-o", picture});

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "tests/pathtracer/load/description/json_schema.hpp"
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {
@@ -21,7 +22,7 @@ const std::string scenes = TANDEM_SOURCE_DIRECTORY "/scenes/";
 Json read_json(const std::filesystem::path& path) { return Json::parse(read_text(path)); }
 
 /// A folder with two boxes, one of which may be changed, and a scene that overflows.
-class Sandbox : public TemporaryFolder {
+class Sandbox : public ScratchFolder {
  public:
   Sandbox() {
     const std::string obj = read_text(scenes + "cornell_box.obj");

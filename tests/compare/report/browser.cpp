@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "tests/support/scratch_folder.hpp"
+
 namespace tandem::test {
 namespace {
 
@@ -86,23 +88,6 @@ std::string output_of(const std::string& command) {
   return result;
 }
 
-/// A folder for the page and the browser's own files, removed with all that is in it.
-struct Folder {
-  Folder() {
-    std::string name = (std::filesystem::temp_directory_path() / "tandem-report-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder for temporary files");
-    path = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::filesystem::path path;
-};
-
 std::string inserted(std::string text, std::string_view before, const std::string& what) {
   const std::size_t at = text.rfind(before);
   REQUIRE(at != std::string::npos);
@@ -114,8 +99,8 @@ std::string inserted(std::string text, std::string_view before, const std::strin
 BrowserOutcome run_in_browser(const std::string& page, const std::string& script) {
   REQUIRE_MESSAGE(std::string_view(TANDEM_CHROMIUM) != "",
                   "Chromium is not installed; scripts/setup installs it, then configure again");
-  const Folder folder;
-  const std::filesystem::path file = folder.path / "index.html";
+  const ScratchFolder folder;  // for the page and the browser's own files
+  const std::filesystem::path file = folder.path() / "index.html";
   std::string watched = page;
   const std::size_t title = watched.find("<title>");
   REQUIRE(title != std::string::npos);
@@ -124,7 +109,7 @@ BrowserOutcome run_in_browser(const std::string& page, const std::string& script
   const std::string sandbox = geteuid() == 0 ? " --no-sandbox" : "";  // it refuses to be root's
   const std::string dom =
       output_of("'" TANDEM_CHROMIUM "' --headless --disable-gpu --window-size=1200,900" + sandbox +
-                " --user-data-dir='" + (folder.path / "profile").string() +
+                " --user-data-dir='" + (folder.path() / "profile").string() +
                 "' --virtual-time-budget=60000 --dump-dom 'file://" + file.string() + "' 2>/dev/null");
   static constexpr std::string_view tag = "<pre id=\"test-result\">";
   const std::size_t at = dom.find(tag);

@@ -1,7 +1,6 @@
 // The statistical tier on devices: no false alarm under other seeds, and a bias is found.
 
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -22,8 +21,8 @@ pathtracer::Scene cornell_box() {
   return pathtracer::load_scene(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes/cornell_box.obj", {});
 }
 
-pathtracer::Renderer renderer_of(rhi::Device& device, const pathtracer::RenderSettings& settings) {
-  return {{std::shared_ptr<void>(), &device}, cornell_box(), settings};
+pathtracer::Renderer renderer_of(const rhi::DeviceHandle& device, const pathtracer::RenderSettings& settings) {
+  return {device, cornell_box(), settings};
 }
 
 /// Pictures under the seeds from `first_seed` on.
@@ -44,7 +43,7 @@ std::vector<pathtracer::Image> batches(pathtracer::Renderer& renderer, std::uint
 TANDEM_DEVICE_TEST("A device under 50 other seeds is accepted 50 times") {
   constexpr std::uint32_t count = 8, tile = 8;
   pathtracer::Renderer renderer =
-      renderer_of(device, {.width = 16, .height = 16, .max_depth = 5, .planned_samples = 1});
+      renderer_of(device_handle, {.width = 16, .height = 16, .max_depth = 5, .planned_samples = 1});
   const compare::BatchedEstimate expected = compare::batched(batches(renderer, 0, count), tile);
   for (std::uint32_t seed = 1; seed <= 50; ++seed) {
     CAPTURE(seed);
@@ -57,7 +56,7 @@ TANDEM_DEVICE_TEST("A tile that is brighter by 2 % is found, where many samples 
   // Direct light alone, on the back wall above the blocks, which nothing shades.
   const pathtracer::Camera camera{.position = {278, 450, 100}, .target = {278, 430, 559}, .vertical_fov = 20};
   pathtracer::Renderer renderer =
-      renderer_of(device, {.width = 16, .height = 16, .max_depth = 2, .camera = camera, .planned_samples = 8});
+      renderer_of(device_handle, {.width = 16, .height = 16, .max_depth = 2, .camera = camera, .planned_samples = 8});
   const compare::BatchedEstimate a = compare::batched(batches(renderer, 0, count), tile);
   const std::vector<pathtracer::Image> b = batches(renderer, 100, count);
   CHECK(compare::test_bias(a, compare::batched(b, tile)).p_value > level);

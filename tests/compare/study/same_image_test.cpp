@@ -1,6 +1,5 @@
 // Every sampler and every option of the integrator is a way to the same image: compared tile by tile.
 
-#include <memory>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -41,11 +40,11 @@ double tiles_p_value(const std::vector<pathtracer::Image>& a, const std::vector<
   return compare::test_bias(compare::batched(a, tile), compare::batched(b, tile)).tiles_p_value;
 }
 
-pathtracer::Renderer renderer_of(rhi::Device& device, const pathtracer::Scene& scene) {
-  return {{std::shared_ptr<void>(), &device}, scene, {.width = side, .height = side}};
+pathtracer::Renderer renderer_of(const rhi::DeviceHandle& device, const pathtracer::Scene& scene) {
+  return {device, scene, {.width = side, .height = side}};
 }
 
-void check_same_image(rhi::Device& device, const pathtracer::Scene& scene, std::uint32_t samples) {
+void check_same_image(const rhi::DeviceHandle& device, const pathtracer::Scene& scene, std::uint32_t samples) {
   constexpr std::uint32_t seeds = 8;
   pathtracer::Renderer renderer = renderer_of(device, scene);  // one: a device may take long to compile
   const std::vector<pathtracer::Image> expected = images(renderer, {}, samples, 2 * seeds, 1000);
@@ -62,18 +61,18 @@ void check_same_image(rhi::Device& device, const pathtracer::Scene& scene, std::
 }  // namespace
 
 TANDEM_DEVICE_TEST("Every sampler and option converges to the same image of the Cornell box") {
-  check_same_image(device, study::weekend_box(), 32);
+  check_same_image(device_handle, study::weekend_box(), 32);
 }
 
 TANDEM_DEVICE_TEST("Every sampler and option converges to the same image of a light over a floor") {
-  check_same_image(device, study::light_over_floor(), 16);
+  check_same_image(device_handle, study::light_over_floor(), 16);
 }
 
 TANDEM_DEVICE_TEST("An image that is darker by a few hundredths is found out") {
   const pathtracer::Scene scene = study::weekend_box();
   pathtracer::Scene darker = scene;
   for (pathtracer::GpuMaterial& material : darker.materials) material.emission *= 0.95f;
-  pathtracer::Renderer bright = renderer_of(device, scene);
-  pathtracer::Renderer dark = renderer_of(device, darker);
+  pathtracer::Renderer bright = renderer_of(device_handle, scene);
+  pathtracer::Renderer dark = renderer_of(device_handle, darker);
   CHECK(tiles_p_value(images(dark, {}, 64, 10, 0), images(bright, {}, 64, 20, 1000)) < 1e-4);
 }

@@ -1,7 +1,6 @@
 #include "compare/study/sampling_study.hpp"
 
 #include <cmath>
-#include <memory>
 
 #include <doctest/doctest.h>
 
@@ -18,8 +17,6 @@ namespace {
 MethodResult measured(const std::vector<Measurement>& measurements) {
   return {.method = {}, .measurements = measurements};
 }
-
-rhi::DeviceHandle handle(rhi::Device& device) { return {std::shared_ptr<void>(), &device}; }
 
 }  // namespace
 
@@ -44,7 +41,7 @@ TANDEM_DEVICE_TEST("Independent samples converge as N^-1/2, Sobol samples of a s
   const std::vector<study::Method> methods = {{.name = "independent"},
                                               {.name = "Sobol", .sampler = pathtracer::SamplerKind::sobol}};
   const std::optional<study::SceneResult> result =
-      study::study_scene(handle(device), study::light_over_floor(), methods, settings, false);
+      study::study_scene(device_handle, study::light_over_floor(), methods, settings, false);
   REQUIRE(result.has_value());
   // The errors of 256 pixels with three channels alike: the slope has a standard error of some 0.02.
   CHECK(result->methods[0].slope() == doctest::Approx(-0.5).epsilon(0.16));
@@ -57,7 +54,7 @@ TANDEM_DEVICE_TEST("Independent samples converge as N^-1/2, Sobol samples of a s
 TANDEM_DEVICE_TEST("Lights, MIS and Sobol need far fewer samples than the thesis's method in the Cornell box") {
   const study::StudySettings settings{.size = 16, .sample_counts = {4, 16}, .reference_samples = 1024};
   const std::optional<study::SceneResult> result =
-      study::study_scene(handle(device), study::weekend_box(), {}, settings, true);
+      study::study_scene(device_handle, study::weekend_box(), {}, settings, true);
   REQUIRE(result.has_value());
   REQUIRE(result->sample_ratio.has_value());
   const std::optional<double> ratio = result->sample_ratio->ratio();
@@ -67,7 +64,7 @@ TANDEM_DEVICE_TEST("Lights, MIS and Sobol need far fewer samples than the thesis
 
 TANDEM_DEVICE_TEST("A study that is cancelled has no result") {
   const study::StudySettings settings{.size = 4, .sample_counts = {1, 2}, .reference_samples = 4};
-  CHECK_FALSE(study::study_scene(handle(device), study::weekend_box(), study::methods(), settings, true, [](double) {
+  CHECK_FALSE(study::study_scene(device_handle, study::weekend_box(), study::methods(), settings, true, [](double) {
                 return false;
               }).has_value());
 }

@@ -3,23 +3,19 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "base/error.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::compare {
 namespace {
 
-const std::filesystem::path folder = std::filesystem::temp_directory_path() / "tandem_thresholds_test";
-
 /// Thresholds of a scene with this file beside it.
 Thresholds read(const std::string& text) {
-  std::filesystem::create_directories(folder);
-  std::ofstream(folder / "box.thresholds.json") << text;
-  const Thresholds thresholds = thresholds_of(folder / "box.obj");
-  std::filesystem::remove_all(folder);
-  return thresholds;
+  const test::ScratchFolder folder;
+  folder.write("box.thresholds.json", text);
+  return thresholds_of(folder.path() / "box.obj");
 }
 
 /// What is said of the file, from its name on.
@@ -27,7 +23,6 @@ std::string complaint(const std::string& text) {
   try {
     read(text);
   } catch (const tandem::Error& error) {
-    std::filesystem::remove_all(folder);
     const std::string sentence = error.what();
     REQUIRE(sentence.find("box.thresholds.json") != std::string::npos);
     return sentence.substr(sentence.find("box.thresholds.json"));
@@ -38,7 +33,7 @@ std::string complaint(const std::string& text) {
 TEST_CASE("a scene without a file has the usual thresholds, each with a reason") {
   Thresholds usual;
   usual.set({RuleMetric::bit_equal, 0.5, "as usual"});
-  const Thresholds thresholds = thresholds_of(folder / "absent.obj", usual);
+  const Thresholds thresholds = thresholds_of("absent.obj", usual);
   CHECK(thresholds.tier == Tier::tolerance);
   CHECK(thresholds.limit(RuleMetric::bit_equal) == 0.5);
   CHECK(thresholds.limit(RuleMetric::within_1e3) == 0.99);

@@ -9,7 +9,7 @@
 
 #include "base/error.hpp"
 #include "pathtracer/load/obj/obj_loader.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/srgb.hpp"
 #include "pathtracer/image/image_codec.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;
@@ -39,7 +39,7 @@ TEST_CASE("OpenEXR keeps every bit and the metadata") {
   CHECK(read.height == 11);
   CHECK(read.pixels == image.pixels);
   CHECK(stored == metadata);
-  CHECK(folder.size() == 1);
+  CHECK(folder.names().size() == 1);
 }
 
 TEST_CASE("OpenEXR holds layers beside the picture, which stays what it is; PNG has none") {
@@ -100,7 +100,7 @@ TEST_CASE("A place that cannot be written is known beforehand, and nothing is le
   folder.write("file", "");
   CHECK_NOTHROW(check_image_path(folder.path() / "a.exr"));
   CHECK_NOTHROW(check_image_path(folder.path() / "a.PNG"));
-  CHECK(folder.size() == 1);
+  CHECK(folder.names().size() == 1);
   for (const std::filesystem::path& path :
        {folder.path(), folder.path() / "a.jpg", folder.path() / "a", folder.path() / "absent" / "a.png",
         folder.path() / "file" / "a.png", std::filesystem::path("/proc/a.png"), std::filesystem::path()}) {
@@ -108,7 +108,7 @@ TEST_CASE("A place that cannot be written is known beforehand, and nothing is le
     CHECK_THROWS_AS(check_image_path(path), tandem::Error);
     CHECK_THROWS_AS(write_image(path, ramp(2, 2), {}), tandem::Error);
   }
-  CHECK(folder.size() == 1);
+  CHECK(folder.names().size() == 1);
 }
 
 TEST_CASE("What is no picture cannot be read") {

@@ -11,7 +11,7 @@
 #include "base/srgb.hpp"
 #include "pathtracer/image/image_codec.hpp"
 #include "pathtracer/image/image_io.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;

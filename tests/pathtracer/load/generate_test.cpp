@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "pathtracer/scene/lights.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;
@@ -46,7 +46,7 @@ TEST_CASE("The same count gives the same bytes and nothing but the two files") {
   const std::string first = contents_of(folder.path() / "a.obj");
   generate_spheres(5000, folder.path() / "a.obj");
   CHECK(contents_of(folder.path() / "a.obj") == first);
-  CHECK(folder.size() == 2);
+  CHECK(folder.names().size() == 2);
 }
 
 TEST_CASE("Generated spheres are closed, look outwards and stay inside the room and apart") {
@@ -80,5 +80,5 @@ TEST_CASE("Counts out of range and places that cannot be written are errors that
   CHECK_THROWS_AS(generate_spheres(100, folder.path() / "a.txt"), tandem::Error);
   CHECK_THROWS_AS(generate_spheres(100, folder.path() / "absent" / "a.obj"), tandem::Error);
   CHECK_THROWS_AS(generate_spheres(100, folder.path()), tandem::Error);
-  CHECK(folder.size() == 0);
+  CHECK(folder.names().size() == 0);
 }

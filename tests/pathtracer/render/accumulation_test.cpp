@@ -11,7 +11,6 @@
 
 using namespace tandem;
 using namespace tandem::pathtracer;
-using tandem::test::handle;
 using tandem::test::rendered;
 
 namespace {
@@ -24,7 +23,7 @@ const RenderSettings small{.width = 24, .height = 16};
 
 TANDEM_DEVICE_TEST("Frames add up to the picture of all their samples, and stop at the cap") {
   const Scene scene = box();
-  Renderer renderer(handle(device), scene, small);
+  Renderer renderer(device_handle, scene, small);
   Accumulation accumulation(renderer);
   const AccumulationSettings frames{.samples_per_frame = 2, .maximum_samples = 5};
   CHECK(accumulation.next_frame(small, frames));
@@ -34,12 +33,12 @@ TANDEM_DEVICE_TEST("Frames add up to the picture of all their samples, and stop 
   CHECK(renderer.samples() == 5);
   CHECK_FALSE(accumulation.next_frame(small, frames));
   CHECK(renderer.samples() == 5);
-  CHECK(renderer.image().pixels == rendered(device, scene, small, 5).pixels);
+  CHECK(renderer.image().pixels == rendered(device_handle, scene, small, 5).pixels);
 }
 
 TANDEM_DEVICE_TEST("A change of the camera or of a setting begins anew; what changes no picture does not") {
   const Scene scene = box();
-  Renderer renderer(handle(device), scene, small);
+  Renderer renderer(device_handle, scene, small);
   Accumulation accumulation(renderer);
   const AccumulationSettings frames{.samples_per_frame = 1, .maximum_samples = 100};
   RenderSettings settings = small;
@@ -61,12 +60,12 @@ TANDEM_DEVICE_TEST("A change of the camera or of a setting begins anew; what cha
   settings.width = 20;
   CHECK(samples_after_frame() == 1);
   CHECK(samples_after_frame() == 2);
-  CHECK(renderer.image().pixels == rendered(device, scene, settings, 2).pixels);
+  CHECK(renderer.image().pixels == rendered(device_handle, scene, settings, 2).pixels);
 }
 
 TANDEM_DEVICE_TEST("Without accumulation every frame is a picture of its own") {
   const Scene scene = box();
-  Renderer renderer(handle(device), scene, small);
+  Renderer renderer(device_handle, scene, small);
   Accumulation accumulation(renderer);
   const AccumulationSettings single{.samples_per_frame = 2, .maximum_samples = 5, .accumulate = false};
   REQUIRE(accumulation.next_frame(small, single));
@@ -78,11 +77,11 @@ TANDEM_DEVICE_TEST("Without accumulation every frame is a picture of its own") {
   AccumulationSettings frames = single;
   frames.accumulate = true;
   REQUIRE(accumulation.next_frame(small, frames));
-  CHECK(renderer.image().pixels == rendered(device, scene, small, 2).pixels);
+  CHECK(renderer.image().pixels == rendered(device_handle, scene, small, 2).pixels);
 }
 
 TANDEM_DEVICE_TEST("A frame without samples is an error") {
-  Renderer renderer(handle(device), box(), small);
+  Renderer renderer(device_handle, box(), small);
   Accumulation accumulation(renderer);
   CHECK_THROWS_AS(accumulation.next_frame(small, {.samples_per_frame = 0}), Error);
   CHECK_THROWS_AS(accumulation.next_frame(small, {.maximum_samples = 0}), Error);

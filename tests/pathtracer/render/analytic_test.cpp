@@ -8,8 +8,8 @@
 
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "tests/pathtracer/render/picture.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
@@ -49,7 +49,7 @@ TANDEM_DEVICE_TEST("Between parallel mirrors every reflection takes its part") {
     // Roulette, which begins at the fourth vertex, is noise: its paths die with at most 5 %, or with what is lost.
     const double expected = std::pow(0.9, reflections);
     const double tolerance = reflections < 4 ? 1e-5 : 0.03;
-    CHECK(mean(rendered(device, corridor, settings, reflections < 4 ? 1 : 256)) ==
+    CHECK(mean(rendered(device_handle, corridor, settings, reflections < 4 ? 1 : 256)) ==
           doctest::Approx(expected).epsilon(tolerance));
   }
 }
@@ -73,7 +73,7 @@ TANDEM_DEVICE_TEST("A slab of glass displaces what is behind it and takes what F
     const RenderSettings settings{
         .width = 64, .height = 8, .max_depth = 3, .camera = camera, .background = glm::vec3(0)};
     constexpr double view_width = 4;
-    CHECK(view_width * mean(rendered(device, load_text(light, materials), settings, 16)) ==
+    CHECK(view_width * mean(rendered(device_handle, load_text(light, materials), settings, 16)) ==
           doctest::Approx(view_width / 2).epsilon(0.01));
 
     const double refracted = std::asin(std::sin(angle) / ior);
@@ -81,7 +81,7 @@ TANDEM_DEVICE_TEST("A slab of glass displaces what is behind it and takes what F
     const double p = (ior * std::cos(angle) - std::cos(refracted)) / (ior * std::cos(angle) + std::cos(refracted));
     const double transmitted = std::pow(1 - 0.5 * (s * s + p * p), 2);
     const double displacement = thickness * std::sin(angle - refracted) / std::cos(refracted);
-    const double lit = view_width * mean(rendered(device, load_text(light + slab, materials), settings, 256));
+    const double lit = view_width * mean(rendered(device_handle, load_text(light + slab, materials), settings, 256));
     // A path is transmitted or not: five deviations of the mean of 131072 of them are 0.7 % of the width.
     CHECK(lit == doctest::Approx(transmitted * (view_width / 2 + displacement)).epsilon(0.007));
   }

@@ -51,7 +51,7 @@ TANDEM_DEVICE_TEST("A white ball in a white world is white in every camera") {
   const Scene scene = ball({0, 0, 0}, 0.75f, diffuse_material(glm::vec3(1)));
   RenderSettings settings = view(front);
   settings.max_depth = 64;
-  Renderer renderer(test::handle(device), scene, settings);
+  Renderer renderer(device_handle, scene, settings);
   for (const Camera& camera : all_kinds()) {
     settings.camera = camera;
     renderer.restart(settings);
@@ -72,7 +72,7 @@ TANDEM_DEVICE_TEST("Out of focus a point is a disk as large as the lens makes it
         ball({0, 0, 10 - distance}, static_cast<float>(radius), diffuse_material(glm::vec3(0), glm::vec3(100)));
     RenderSettings settings = view(camera);
     settings.background = glm::vec3(0);
-    const Image image = test::rendered(device, scene, settings, 256);
+    const Image image = test::rendered(device_handle, scene, settings, 256);
     // Similar triangles, from the rim of the lens past the ball to the plane of focus.
     const double blurred = lens_radius * std::abs(10 - distance) / distance + radius * 10 / distance;
     double farthest = 0, sum = 0, at_rim = 0;
@@ -95,7 +95,7 @@ TANDEM_DEVICE_TEST("In focus a lens draws what a pinhole does") {
   const Scene scene = ball({0, 0, 0}, 0.02f, diffuse_material(glm::vec3(0)));
   Camera camera = front;
   camera.lens_radius = 0.25f;
-  const Image image = test::rendered(device, scene, view(camera), 16);
+  const Image image = test::rendered(device_handle, scene, view(camera), 16);
   for (std::uint32_t y = 0; y < 64; ++y)
     for (std::uint32_t x = 0; x < 64; ++x) {
       const bool near = (x == 31 || x == 32) && (y == 31 || y == 32);
@@ -114,7 +114,7 @@ TANDEM_DEVICE_TEST("An orthographic camera shows things as large as they are, ho
     RenderSettings settings = view(camera);
     settings.width = 96;
     const Image image =
-        test::rendered(device, ball({1, -0.5f, z}, 0.75f, diffuse_material(glm::vec3(0))), settings, 16);
+        test::rendered(device_handle, ball({1, -0.5f, z}, 0.75f, diffuse_material(glm::vec3(0))), settings, 16);
     double covered = 0;
     for (std::uint32_t y = 0; y < 64; ++y)
       for (std::uint32_t x = 0; x < 96; ++x) {
@@ -146,7 +146,8 @@ TANDEM_DEVICE_TEST("An equirectangular camera sees all around, as many pixels to
   for (const View& place :
        {View{{0, 0, -5}, 0.5, 0.5}, {{5, 0, 0}, 0.75, 0.5}, {{0, 0, 5}, 0, 0.5}, {{-5, 0, 0}, 0.25, 0.5}}) {
     const Image image = test::rendered(
-        device, ball(place.direction, static_cast<float>(half_width), diffuse_material(glm::vec3(0))), settings, 4);
+        device_handle, ball(place.direction, static_cast<float>(half_width), diffuse_material(glm::vec3(0))), settings,
+        4);
     for (std::uint32_t x = 0; x < 144; ++x) {
       double degrees = std::abs((x + 0.5) / 144 - place.x) * 360;
       degrees = std::min(degrees, 360 - degrees);
@@ -158,7 +159,7 @@ TANDEM_DEVICE_TEST("An equirectangular camera sees all around, as many pixels to
     }
   }
   const Image above = test::rendered(
-      device, ball({0, 5, 0}, static_cast<float>(half_width), diffuse_material(glm::vec3(0))), settings, 4);
+      device_handle, ball({0, 5, 0}, static_cast<float>(half_width), diffuse_material(glm::vec3(0))), settings, 4);
   for (std::uint32_t y = 0; y < 72; ++y)
     for (std::uint32_t x = 0; x < 144; ++x) REQUIRE(above.at(x, y).x == (y < 4 ? 0.0f : 1.0f));
 }
@@ -173,8 +174,8 @@ TANDEM_DEVICE_TEST("A camera that moves blurs a ball that stands still as if the
   moved.spheres[0].motion = {1.2f, 0, 0};
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Image a = test::rendered(device, still, view(moving), 64, form);
-    const Image b = test::rendered(device, moved, view(front), 64, form);
+    const Image a = test::rendered(device_handle, still, view(moving), 64, form);
+    const Image b = test::rendered(device_handle, moved, view(front), 64, form);
     // The same samples at the same times: they differ where rounding moves the rim past one.
     std::size_t different = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) different += a.pixels[i] != b.pixels[i] ? 1 : 0;

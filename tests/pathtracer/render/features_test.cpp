@@ -17,10 +17,10 @@ TANDEM_DEVICE_TEST("Features that are on and not used change no bit of a picture
   for (const char* name : {"cornell_box.obj", "cornell_spheres.obj", "foliage.obj"}) {
     CAPTURE(name);
     const Scene scene = load_scene(scenes / name);
-    const Image plain = rendered(device, scene, few, 3, TracingMode::query);
+    const Image plain = rendered(device_handle, scene, few, 3, TracingMode::query);
     many.further_features = feature::samplers;
-    CHECK(rendered(device, scene, many, 3, TracingMode::query).pixels == plain.pixels);
+    CHECK(rendered(device_handle, scene, many, 3, TracingMode::query).pixels == plain.pixels);
     many.further_features = feature::all;
-    CHECK(rendered(device, scene, many, 3, TracingMode::query).pixels == plain.pixels);
+    CHECK(rendered(device_handle, scene, many, 3, TracingMode::query).pixels == plain.pixels);
   }
 }

@@ -9,12 +9,11 @@
 #include "pathtracer/render/first_hits.hpp"
 #include "pathtracer/render/renderer.hpp"
 #include "tests/pathtracer/render/picture.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
-using tandem::test::handle;
 using tandem::test::ScratchFolder;
 using tandem::test::tracing_modes;
 
@@ -55,7 +54,7 @@ TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what 
   const Scene scene = two_squares();
   for (const TracingMode form : tracing_modes(device)) {
     CAPTURE(name(form));
-    SceneOnDevice at_red(handle(device), scene, looking_at(0), form);
+    SceneOnDevice at_red(device_handle, scene, looking_at(0), form);
     const auto red = first_hits(at_red, 6);
     for (const std::size_t pixel : {0u, 27u, 63u}) {
       CHECK(value(red, "albedo.R", pixel) == doctest::Approx(0.8));
@@ -67,7 +66,7 @@ TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what 
       CHECK(whole(red, "id.primitive", pixel) < 2);
       CHECK(whole(red, "id.material", pixel) == 0);
     }
-    SceneOnDevice at_shiny(handle(device), scene, looking_at(4), form);
+    SceneOnDevice at_shiny(device_handle, scene, looking_at(4), form);
     const auto shiny = first_hits(at_shiny, 6);
     CHECK(value(shiny, "albedo.G", 20) == doctest::Approx(0.6));
     CHECK(value(shiny, "normal.X", 20) == doctest::Approx(-std::sqrt(0.5)));
@@ -81,7 +80,7 @@ TANDEM_DEVICE_TEST("First hits are colour, normal, distance and numbers of what 
 
 TANDEM_DEVICE_TEST("Where nothing is seen, first hits are nothing; at an edge they are in between") {
   const Scene scene = two_squares();
-  Renderer renderer(handle(device), scene, looking_at(-20));
+  Renderer renderer(device_handle, scene, looking_at(-20));
   const auto nothing = first_hits(renderer.scene(), 3);
   CHECK(value(nothing, "coverage.Y", 5) == 0);
   CHECK(value(nothing, "albedo.R", 5) == 0);
@@ -101,11 +100,11 @@ TANDEM_DEVICE_TEST("Where nothing is seen, first hits are nothing; at an edge th
 
 TANDEM_DEVICE_TEST("Looking at first hits changes no picture") {
   const Scene scene = two_squares();
-  Renderer renderer(handle(device), scene, looking_at(0));
+  Renderer renderer(device_handle, scene, looking_at(0));
   renderer.render(2);
   const Image before = renderer.image();
   first_hits(renderer.scene(), 2);
   CHECK(renderer.image().pixels == before.pixels);
   renderer.render(2);
-  CHECK(renderer.image().pixels == test::rendered(device, scene, looking_at(0), 4).pixels);
+  CHECK(renderer.image().pixels == test::rendered(device_handle, scene, looking_at(0), 4).pixels);
 }

@@ -13,7 +13,6 @@ using namespace tandem;
 using namespace tandem::pathtracer;
 using tandem::test::Estimate;
 using tandem::test::estimate;
-using tandem::test::handle;
 using tandem::test::rendered;
 
 namespace {
@@ -62,7 +61,7 @@ TANDEM_DEVICE_TEST("A floor under lights without extent has their analytic radia
   scene.positions.insert(scene.positions.end(), {{-1.1f, 1, -0.1f}, {-0.9f, 1, -0.1f}, {-1, 1, 0.2f}});
   scene.normals.resize(scene.positions.size());
   scene.triangles.push_back({{4, 5, 6}, 0});
-  Renderer renderer(handle(device), scene, settings);
+  Renderer renderer(device_handle, scene, settings);
   const auto result = [&](const std::vector<PunctualLight>& lights, std::uint32_t samples) {
     renderer.set_lights(lights);
     renderer.render(samples);
@@ -81,7 +80,7 @@ TANDEM_DEVICE_TEST("A floor under lights without extent has their analytic radia
 TANDEM_DEVICE_TEST("A constant environment lights a floor, by whichever way it is found") {
   Scene scene = floor_scene();
   scene.environment = Environment{.radiance = glm::vec3(0.75f)};
-  const Estimate result = estimate(rendered(device, scene, settings, 64));
+  const Estimate result = estimate(rendered(device_handle, scene, settings, 64));
   CHECK(result.standard_error < 0.01 * 0.375);
   CHECK(std::abs(result.mean - 0.375) < 4 * result.standard_error + 1e-5);
 }
@@ -93,13 +92,13 @@ TANDEM_DEVICE_TEST("Lights that change while rendering give what a renderer made
   scene.normals.resize(scene.positions.size());
   scene.triangles.push_back({{4, 5, 6}, 1});
   const RenderSettings wide{.width = 16, .height = 16, .max_depth = 4, .camera = Camera{.position = {0, 1, 3}}};
-  Renderer renderer(handle(device), scene, wide);
+  Renderer renderer(device_handle, scene, wide);
   renderer.render(4);
   const Image light_alone = renderer.image();
 
   Scene lit = scene;
   lit.lights = {aside, sun, spot};
-  Renderer made_for_them(handle(device), lit, wide);
+  Renderer made_for_them(device_handle, lit, wide);
   renderer.set_lights(lit.lights);
   CHECK(renderer.samples() == 0);
   renderer.render(4);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -14,8 +13,8 @@
 #include "pathtracer/render/path_recorder.hpp"
 #include "pathtracer/render/ray_tracer.hpp"
 #include "pathtracer/render/renderer.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
@@ -23,9 +22,6 @@ using namespace tandem::pathtracer;
 namespace {
 
 const std::filesystem::path source_directory = TANDEM_SOURCE_DIRECTORY;
-
-/// The test's device outlives the renderer, so it needs no owner.
-rhi::DeviceHandle handle(rhi::Device& device) { return {std::shared_ptr<void>(), &device}; }
 
 constexpr RenderSettings small = {.width = 9, .height = 7, .max_depth = 5, .seed = 3};
 constexpr std::uint32_t samples = 2;
@@ -155,12 +151,12 @@ void check_resumption(Renderer& renderer, const std::vector<PathId>& paths, cons
   CHECK(single_same);
 }
 
-void check_events(rhi::Device& device, const Scene& scene) {
+void check_events(const rhi::DeviceHandle& device, const Scene& scene) {
   const std::vector<PathId> paths = all_paths();
   std::vector<PathEvents> first_form;
-  for (const TracingMode form : forms_of(device)) {
+  for (const TracingMode form : forms_of(*device)) {
     CAPTURE(name(form));
-    Renderer renderer(handle(device), scene, small, form);
+    Renderer renderer(device, scene, small, form);
     REQUIRE(renderer.render(samples));
     const Image before = renderer.image();
     const std::vector<PathEvents> events = record_paths(renderer.scene(), all_starts());
@@ -181,22 +177,22 @@ void check_events(rhi::Device& device, const Scene& scene) {
 }  // namespace
 
 TANDEM_DEVICE_TEST("The events of a path can be written down, resumed and summed, in every form") {
-  check_events(device, load_obj(source_directory / "scenes" / "cornell_box.obj"));
+  check_events(device_handle, load_obj(source_directory / "scenes" / "cornell_box.obj"));
 }
 
 TANDEM_DEVICE_TEST("Events of paths through transparent triangles are as those of the picture") {
-  check_events(device, box_behind_a_veil());
+  check_events(device_handle, box_behind_a_veil());
 }
 
 TANDEM_DEVICE_TEST("Events of paths among spheres say where a procedural hit was") {
   const Scene scene = load_scene(source_directory / "scenes" / "cornell_box_spheres.json");
   REQUIRE_FALSE(scene.spheres.empty());
-  check_events(device, scene);
+  check_events(device_handle, scene);
 }
 
 TANDEM_DEVICE_TEST("What a device reports of a hit belongs to the primitive that it names") {
   const Scene scene = in_device_order(load_obj(source_directory / "scenes" / "cornell_box.obj"));
-  Renderer renderer(handle(device), scene, small);
+  Renderer renderer(device_handle, scene, small);
   std::size_t hits = 0;
   for (const PathEvents& events : record_paths(renderer.scene(), all_starts())) {
     for (const PathEvent& event : events) {

@@ -8,8 +8,6 @@ namespace tandem::test {
 
 using pathtracer::TracingMode;
 
-rhi::DeviceHandle handle(rhi::Device& device) { return {std::shared_ptr<void>(), &device}; }
-
 std::vector<TracingMode> tracing_modes(const rhi::Device& device) {
   std::vector<TracingMode> forms;
   if (device.info().capabilities.ray_query) forms.push_back(TracingMode::query);
@@ -18,10 +16,10 @@ std::vector<TracingMode> tracing_modes(const rhi::Device& device) {
   return forms;
 }
 
-pathtracer::Image rendered(rhi::Device& device, const pathtracer::Scene& scene,
+pathtracer::Image rendered(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
                            const pathtracer::RenderSettings& settings, std::uint32_t samples,
                            std::optional<TracingMode> trace) {
-  pathtracer::Renderer renderer(handle(device), scene, settings, trace);
+  pathtracer::Renderer renderer(device, scene, settings, trace);
   REQUIRE(renderer.render(samples));
   return renderer.image();
 }

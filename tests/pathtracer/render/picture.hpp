@@ -8,13 +8,10 @@
 
 namespace tandem::test {
 
-/// A handle on a device that outlives the renderer, and so needs no owner.
-rhi::DeviceHandle handle(rhi::Device& device);
-
 /// The forms of tracing that the device has; at least one.
 std::vector<pathtracer::TracingMode> tracing_modes(const rhi::Device& device);
 
-pathtracer::Image rendered(rhi::Device& device, const pathtracer::Scene& scene,
+pathtracer::Image rendered(const rhi::DeviceHandle& device, const pathtracer::Scene& scene,
                            const pathtracer::RenderSettings& settings, std::uint32_t samples,
                            std::optional<pathtracer::TracingMode> trace = {});
 

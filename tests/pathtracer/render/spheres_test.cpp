@@ -99,7 +99,7 @@ TANDEM_DEVICE_TEST(
   const Scene scene = one_weekend();
   std::vector<Image> images;
   for (const TracingMode form : test::tracing_modes(device))
-    images.push_back(test::rendered(device, scene, one_weekend_view, 4, form));
+    images.push_back(test::rendered(device_handle, scene, one_weekend_view, 4, form));
   for (const Image& image : images) CHECK(image.pixels == images.front().pixels);
   const test::Estimate estimate = test::estimate(images.front());
   CHECK(estimate.mean > 0.2);
@@ -107,10 +107,11 @@ TANDEM_DEVICE_TEST(
 }
 
 TEST_CASE("All devices see the same spheres") {
+  const test::NoWarnings no_warnings;
   const Scene scene = one_weekend();
   std::vector<Image> images;
   for (const std::string& name : test::device_names())
-    images.push_back(test::rendered(*test::device(name), scene, one_weekend_view, 4));
+    images.push_back(test::rendered(test::device(name), scene, one_weekend_view, 4));
   for (const Image& image : images) {
     std::size_t different = 0;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) different += image.pixels[i] != images.front().pixels[i];
@@ -124,7 +125,7 @@ TANDEM_DEVICE_TEST("A scene of one sphere and nothing else shows a disk, as larg
   add_sphere(scene, {0, 0, 0}, 0.75f, add_material(scene, diffuse_material(glm::vec3(0))));
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Image image = test::rendered(device, scene, front_view, 16, form);
+    const Image image = test::rendered(device_handle, scene, front_view, 16, form);
     // Its silhouette is the circle of the tangents from the camera, on the plane z = 0, 2 high.
     const double radius = 10 * std::tan(std::asin(0.75 / 10));
     const double covered = 3.14159265358979 * radius * radius / 4;
@@ -145,7 +146,7 @@ TANDEM_DEVICE_TEST("A moving sphere covers each pixel for the part of the time t
   constexpr std::uint32_t samples = 256;
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Image image = test::rendered(device, scene, front_view, samples, form);
+    const Image image = test::rendered(device_handle, scene, front_view, samples, form);
     double worst = 0;
     for (std::uint32_t y = 0; y < 64; ++y)
       for (std::uint32_t x = 0; x < 64; ++x) {
@@ -176,7 +177,7 @@ TANDEM_DEVICE_TEST("White spheres in a white room of light disappear") {
   for (const GpuMaterial& material : {diffuse_material(glm::vec3(1)), perfect_mirror, glass()}) {
     Scene scene = empty_scene();
     add_sphere(scene, {0, 0, 0}, 0.75f, add_material(scene, material));
-    const test::Estimate estimate = test::estimate(test::rendered(device, scene, settings, 16));
+    const test::Estimate estimate = test::estimate(test::rendered(device_handle, scene, settings, 16));
     // Only Russian roulette and the last of 64 segments inside glass are noise.
     CHECK(estimate.mean == doctest::Approx(1).epsilon(0.003));
   }
@@ -190,7 +191,7 @@ TANDEM_DEVICE_TEST(
   add_sphere(scene, {0, 0, 0}, 5, add_material(scene, material));
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const test::Estimate estimate = test::estimate(test::rendered(device, scene, front_view, 64, form));
+    const test::Estimate estimate = test::estimate(test::rendered(device_handle, scene, front_view, 64, form));
     CHECK(std::abs(estimate.mean - 0.25) < 4 * estimate.standard_error);
   }
 }
@@ -205,8 +206,8 @@ TANDEM_DEVICE_TEST("The inside of a half transparent sphere is seen where its ou
   add_sphere(with_core, {0, 0, 0}, 4, add_material(with_core, diffuse_material(glm::vec3(0))));
   RenderSettings settings = front_view;
   settings.background = glm::vec3(0);
-  const test::Estimate both = test::estimate(test::rendered(device, scene, settings, 64));
+  const test::Estimate both = test::estimate(test::rendered(device_handle, scene, settings, 64));
   CHECK(std::abs(both.mean - 0.75) < 4 * both.standard_error);
-  const test::Estimate near = test::estimate(test::rendered(device, with_core, settings, 64));
+  const test::Estimate near = test::estimate(test::rendered(device_handle, with_core, settings, 64));
   CHECK(std::abs(near.mean - 0.5) < 4 * near.standard_error);
 }

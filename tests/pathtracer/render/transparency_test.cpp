@@ -9,8 +9,8 @@
 
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "tests/pathtracer/render/picture.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;
@@ -61,10 +61,10 @@ TANDEM_DEVICE_TEST("A plate of opacity 1/4 lets 3/4 of the background pass, two 
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
     // 2^18 samples that are each 0 or 1: a standard error of 1e-3. Four of them are missed once in 16000 seeds.
-    const Estimate once = estimate(rendered(device, one, emission_only, 64, form));
+    const Estimate once = estimate(rendered(device_handle, one, emission_only, 64, form));
     CHECK(once.standard_error < 1e-3);
     CHECK(std::abs(once.mean - 0.75) < 4 * once.standard_error);
-    const Estimate twice = estimate(rendered(device, two, emission_only, 64, form));
+    const Estimate twice = estimate(rendered(device_handle, two, emission_only, 64, form));
     CHECK(twice.standard_error < 1.1e-3);
     CHECK(std::abs(twice.mean - 0.5625) < 4 * twice.standard_error);
   }
@@ -75,8 +75,8 @@ TANDEM_DEVICE_TEST("A plate of opacity 1/4 in front of a light transmits 3/4 of 
   const Scene with = load_text(lit_floor + plate_below_light, floor_materials + "newmtl plate\nKd 0\nd 0.25\n");
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Estimate all = estimate(rendered(device, without, floor_view, 64, form));
-    const Estimate part = estimate(rendered(device, with, floor_view, 64, form));
+    const Estimate all = estimate(rendered(device_handle, without, floor_view, 64, form));
+    const Estimate part = estimate(rendered(device_handle, with, floor_view, 64, form));
     CHECK(part.standard_error < 2e-3 * all.mean);
     CHECK(std::abs(part.mean - 0.75 * all.mean) < 4 * (part.standard_error + all.standard_error));
   }
@@ -90,7 +90,8 @@ TANDEM_DEVICE_TEST("An opacity of 0 changes no bit of the picture behind") {
   settings.max_depth = 6;
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    CHECK(rendered(device, with, settings, 4, form).pixels == rendered(device, without, settings, 4, form).pixels);
+    CHECK(rendered(device_handle, with, settings, 4, form).pixels ==
+          rendered(device_handle, without, settings, 4, form).pixels);
   }
 }
 
@@ -101,11 +102,12 @@ TANDEM_DEVICE_TEST("A light of opacity 1/2 gives half its radiance, seen and sam
   black.background = glm::vec3(0);
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Estimate direct = estimate(rendered(device, seen, black, 64, form));
+    const Estimate direct = estimate(rendered(device_handle, seen, black, 64, form));
     CHECK(std::abs(direct.mean - 1) < 4 * direct.standard_error);
     // Where lights are sampled the opacity is a factor; scattered rays meet the light half of the time.
-    const Estimate covered = estimate(rendered(device, load_text(lit_floor, half), floor_view, 64, form));
-    const Estimate dimmed = estimate(rendered(device, load_text(lit_floor, floor_materials), floor_view, 64, form));
+    const Estimate covered = estimate(rendered(device_handle, load_text(lit_floor, half), floor_view, 64, form));
+    const Estimate dimmed =
+        estimate(rendered(device_handle, load_text(lit_floor, floor_materials), floor_view, 64, form));
     CHECK(covered.standard_error < 0.01 * covered.mean);
     CHECK(std::abs(covered.mean - dimmed.mean) < 4 * std::hypot(covered.standard_error, dimmed.standard_error));
   }
@@ -123,7 +125,7 @@ TANDEM_DEVICE_TEST("A cut-out is seen texel by texel, repeated, upright") {
   settings.height = 32;
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Image image = rendered(device, scene, settings, 8, form);
+    const Image image = rendered(device_handle, scene, settings, 8, form);
     int wrong = 0;
     for (std::uint32_t y = 0; y < 32; ++y)
       for (std::uint32_t x = 0; x < 32; ++x)
@@ -136,7 +138,7 @@ TANDEM_DEVICE_TEST("A texel between 0 and 255 is an opacity, which d multiplies"
   const Scene scene = load_text(square("a", 4, 0), "newmtl a\nKd 0\nd 0.5\nmap_d mask.pgm\n", "P2\n1 1\n255\n153\n");
   for (const TracingMode form : test::tracing_modes(device)) {
     CAPTURE(name(form));
-    const Estimate result = estimate(rendered(device, scene, emission_only, 64, form));
+    const Estimate result = estimate(rendered(device_handle, scene, emission_only, 64, form));
     CHECK(std::abs(result.mean - (1 - 0.5 * 153 / 255)) < 4 * result.standard_error);
   }
 }

@@ -14,7 +14,8 @@
 #include "base/error.hpp"
 #include "pathtracer/load/generate.hpp"
 #include "pathtracer/load/obj/obj_loader.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/run_summary.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;
@@ -270,10 +271,7 @@ TEST_CASE("Flat and degenerate scenes have a camera too") {
 }
 
 TEST_CASE("The automatic camera sees the scenes of the thesis") {
-  if (!std::filesystem::is_directory(thesis_directory)) {
-    MESSAGE("not there, so not tested: " << thesis_directory.string());
-    return;
-  }
+  if (!std::filesystem::is_directory(thesis_directory)) TANDEM_SKIP(thesis_directory.string() + " is not there");
   for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(thesis_directory)) {
     if (entry.path().extension() != ".obj") continue;
     const Scene scene = load_scene(entry.path());

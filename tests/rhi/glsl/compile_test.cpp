@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "rhi/error.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 
@@ -69,16 +69,15 @@ TEST_CASE("words that are no SPIR-V are an error that names the shader") {
 }
 
 TEST_CASE("includes are found in the folders of the options") {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "tandem_glsl_include_test";
-  std::filesystem::create_directories(folder / "nested");
-  std::ofstream(folder / "nested" / "a.glsl") << "#include \"b.glsl\"\n";
-  std::ofstream(folder / "nested" / "b.glsl") << "uint answer() { return 42u; }\n";
+  const test::ScratchFolder folder;
+  std::filesystem::create_directories(folder.path() / "nested");
+  folder.write("nested/a.glsl", "#include \"b.glsl\"\n");
+  folder.write("nested/b.glsl", "uint answer() { return 42u; }\n");
   const std::string source =
       "#version 460\n#extension GL_GOOGLE_include_directive : require\n#include \"nested/a.glsl\"\n"
       "layout(set = 0, binding = 0) buffer Output { uint value[]; };\nvoid main() { value[0] = answer(); }\n";
   glsl::CompileOptions options;
-  options.include_directories = {folder};
+  options.include_directories = {folder.path()};
   CHECK_FALSE(glsl::compile(source, rhi::ShaderStage::compute, "includes", options).empty());
   CHECK_THROWS_AS(glsl::compile(source, rhi::ShaderStage::compute, "includes"), rhi::Error);
-  std::filesystem::remove_all(folder);
 }

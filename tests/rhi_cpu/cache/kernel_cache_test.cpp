@@ -9,7 +9,9 @@
 #include "rhi/error.hpp"
 #include "rhi_cpu/cache/kernel_compiler.hpp"
 #include "rhi_cpu/cache/kernel_seal.hpp"
-#include "tests/rhi_cpu/scratch.hpp"
+#include "tests/support/environment_variable.hpp"
+#include "tests/support/messages.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::cpu {
 namespace {

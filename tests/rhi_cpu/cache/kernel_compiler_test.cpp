@@ -7,7 +7,8 @@
 
 #include "rhi/error.hpp"
 #include "rhi_cpu/cache/kernel_headers.hpp"
-#include "tests/rhi_cpu/scratch.hpp"
+#include "tests/support/environment_variable.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::cpu {
 namespace {

@@ -7,8 +7,10 @@
 
 #include "rhi_cpu/cache/process.hpp"
 #include "rhi_cpu/device.hpp"
-#include "tests/rhi_cpu/scratch.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/environment_variable.hpp"
+#include "tests/support/messages.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 // Shaders that the program does not know: translated, compiled by the system's compiler and cached.
 namespace tandem::cpu {

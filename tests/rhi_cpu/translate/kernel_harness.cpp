@@ -18,12 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-fs::path new_folder() {
-  std::string name = (fs::temp_directory_path() / "tandem-translate-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder for kernels");
-  return name;
-}
-
 std::vector<std::uint32_t> optimized(const std::vector<std::uint32_t>& spirv) {
   spvtools::Optimizer optimizer(SPV_ENV_VULKAN_1_2);
   optimizer.RegisterPerformancePasses();
@@ -46,11 +40,11 @@ std::vector<std::uint32_t> traced_spirv(const std::string& glsl, rhi::ShaderStag
 
 Kernel::Kernel(const std::string& glsl, const KernelOptions& options) : Kernel(compute_spirv(glsl), options) {}
 
-Kernel::Kernel(const std::vector<std::uint32_t>& spirv, const KernelOptions& options) : folder_(new_folder()) {
+Kernel::Kernel(const std::vector<std::uint32_t>& spirv, const KernelOptions& options) {
   const cpu::Translation translation = cpu::translate(options.optimize ? optimized(spirv) : spirv, "test.comp",
                                                       {.specialization = options.specialization});
-  const fs::path source = folder_ / "kernel.cpp";
-  const fs::path library = folder_ / "kernel.so";
+  const fs::path source = folder_.path() / "kernel.cpp";
+  const fs::path library = folder_.path() / "kernel.so";
   std::ofstream(source) << translation.source;
   std::string command = TANDEM_TEST_COMPILER " -shared -fPIC -I " TANDEM_SOURCE_DIRECTORY;
   for (const char* option : cpu::compile_options) command += std::string(" ") + option;
@@ -63,10 +57,7 @@ Kernel::Kernel(const std::vector<std::uint32_t>& spirv, const KernelOptions& opt
   info_ = reinterpret_cast<kernel::EntryFunction>(dlsym(library_, kernel::entry_symbol))();
 }
 
-Kernel::~Kernel() {
-  dlclose(library_);
-  fs::remove_all(folder_);
-}
+Kernel::~Kernel() { dlclose(library_); }
 
 void Kernel::run(std::span<const kernel::Resource> resources, std::initializer_list<std::uint32_t> workgroup_count,
                  std::span<const std::byte> push_constants) const {

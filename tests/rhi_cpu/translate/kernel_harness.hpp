@@ -13,6 +13,7 @@
 #include "rhi/compute_pipeline.hpp"
 #include "rhi_cpu/kernel/abi.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 /// GLSL to a loaded kernel without a device, for tests of the translator alone.
 namespace tandem::test {
@@ -52,7 +53,7 @@ class Kernel {
   void call(kernel::ShaderCall& call) const { info_->call(call); }
 
  private:
-  std::filesystem::path folder_;
+  ScratchFolder folder_;
   void* library_ = nullptr;
   const kernel::KernelInfo* info_ = nullptr;
 };

@@ -32,10 +32,11 @@ RenderSettings seen(const Scene& scene) {
 
 /// Two scenes, each on a device, and what comes out when they are taken for the same.
 struct Comparison {
-  Comparison(rhi::Device& device_a, const Scene& scene_a, rhi::Device& device_b, const Scene& scene_b)
+  Comparison(const rhi::DeviceHandle& device_a, const Scene& scene_a, const rhi::DeviceHandle& device_b,
+             const Scene& scene_b)
       : exact(test::device("cpu-exact")),
-        a(test::handle(device_a), scene_a, seen(scene_a)),
-        b(test::handle(device_b), scene_b, seen(scene_a)),
+        a(device_a, scene_a, seen(scene_a)),
+        b(device_b, scene_b, seen(scene_a)),
         arbiter(exact, scene_a, seen(scene_a)),
         scene(scene_a) {
     REQUIRE(a.render(samples));
@@ -70,7 +71,7 @@ std::string field_of(const Divergence& divergence) {
 
 TANDEM_DEVICE_TEST("A device and the exact one differ in nothing that rounding does not explain") {
   const Scene scene = load_obj(scenes / "cornell_box.obj");
-  const Comparison found(*test::device("cpu-exact"), scene, device, scene);
+  const Comparison found(test::device("cpu-exact"), scene, device_handle, scene);
   CHECK(found.result.surveyed_pixels == 64);
   CHECK(found.result.traced_paths >= 64 * samples);
   CHECK(found.result.mismatches() == 0);
@@ -81,7 +82,7 @@ TANDEM_DEVICE_TEST("A device and the exact one differ in nothing that rounding d
 
 TANDEM_DEVICE_TEST("A device is the same as itself") {
   const Scene scene = load_obj(scenes / "cornell_box.obj");
-  const Comparison found(device, scene, device, scene);
+  const Comparison found(device_handle, scene, device_handle, scene);
   CHECK(found.result.differing_pixels == 0);
   CHECK(found.result.differing_paths == 0);
   CHECK(found.result.paths.empty());
@@ -93,12 +94,13 @@ TANDEM_DEVICE_TEST("Another albedo is a mismatch of the weight with which a path
   const Scene scene = load_obj(scenes / "cornell_box.obj");
   Scene other = scene;
   for (GpuMaterial& material : other.materials) material.base_color *= 0.99f;
-  const Comparison found(device, scene, device, other);
+  const Comparison found(device_handle, scene, device_handle, other);
   const Divergence* const divergence = first_mismatch(found.result);
   REQUIRE(divergence);
   CAPTURE(divergence->sentence);
   // Light that is reflected comes before: its estimate is the first value that knows of the albedo.
   const bool is_albedo = field_of(*divergence) == "light value: bsdf" || field_of(*divergence) == "scatter: weight";
+  CAPTURE(field_of(*divergence));
   CHECK(is_albedo);
   CHECK(divergence->segment == 0);
   CHECK(found.result.mismatches() > 0);
@@ -109,12 +111,13 @@ TANDEM_DEVICE_TEST("Another light is a mismatch of what arrives from it") {
   const Scene scene = load_obj(scenes / "cornell_box.obj");
   Scene other = scene;
   for (GpuMaterial& material : other.materials) material.emission *= 1.01f;
-  const Comparison found(device, scene, device, other);
+  const Comparison found(device_handle, scene, device_handle, other);
   const Divergence* const divergence = first_mismatch(found.result);
   REQUIRE(divergence);
   CAPTURE(divergence->sentence);
   const bool is_light =
       field_of(*divergence) == "light sample: radiance" || field_of(*divergence) == "emission: radiance";
+  CAPTURE(field_of(*divergence));
   CHECK(is_light);
 }
 
@@ -125,17 +128,18 @@ TANDEM_DEVICE_TEST("A vertex in another place is a mismatch of a hit or of what 
   // A corner of the box, and so of walls that fill the picture.
   for (glm::vec3& position : other.positions)
     if (position.x == box.minimum.x && position.y == box.minimum.y) position.x -= 0.02f * box.extent().x;
-  const Comparison found(device, scene, device, other);
+  const Comparison found(device_handle, scene, device_handle, other);
   const Divergence* const divergence = first_mismatch(found.result);
   REQUIRE(divergence);
   CAPTURE(divergence->sentence);
   const bool is_geometry = divergence->a.kind() == EventKind::ray || divergence->a.kind() == EventKind::surface;
+  CAPTURE(name(divergence->a.kind()));
   CHECK(is_geometry);
 }
 
 TANDEM_DEVICE_TEST("A picture that is not the sum of its paths is a mismatch by itself") {
   const Scene scene = load_obj(scenes / "cornell_box.obj");
-  Comparison found(device, scene, device, scene);
+  Comparison found(device_handle, scene, device_handle, scene);
   Image wrong = found.b.image();
   wrong.pixels[100] *= 1.5f;
   const Classification result = classify({found.a.scene(), found.b.scene(), found.arbiter, scene}, found.a.image(),

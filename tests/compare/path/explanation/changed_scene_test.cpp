@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,9 +28,6 @@ namespace {
 
 constexpr pathtracer::RenderSettings settings = {.width = 12, .height = 12, .max_depth = 6, .seed = 5};
 
-/// The test's device outlives the renderer, so it needs no owner.
-rhi::DeviceHandle handle(rhi::Device& device) { return {std::shared_ptr<void>(), &device}; }
-
 Scene cornell_box() {
   return pathtracer::load_obj(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes/cornell_box.obj");
 }
@@ -42,11 +38,11 @@ std::uint32_t material(const Scene& scene, std::string_view name) {
   return static_cast<std::uint32_t>(found - scene.material_names.begin());
 }
 
-std::vector<PathEvents> record(rhi::Device& device, const Scene& scene) {
+std::vector<PathEvents> record(const rhi::DeviceHandle& device, const Scene& scene) {
   std::vector<pathtracer::PathStart> starts;
   for (std::uint32_t y = 0; y < settings.height; ++y)
     for (std::uint32_t x = 0; x < settings.width; ++x) starts.push_back({.path = {.pixel = {x, y}, .sample = 1}});
-  pathtracer::SceneOnDevice on_device(handle(device), scene, settings);
+  pathtracer::SceneOnDevice on_device(device, scene, settings);
   return pathtracer::record_paths(on_device, starts);
 }
 
@@ -65,7 +61,7 @@ struct Found {
   std::string_view field() const { return first->field == nullptr ? "" : first->field->name; }
 };
 
-std::vector<Found> compare_scenes(rhi::Device& device, const Scene& a, const Scene& b) {
+std::vector<Found> compare_scenes(const rhi::DeviceHandle& device, const Scene& a, const Scene& b) {
   const std::vector<PathEvents> of_a = record(device, a), of_b = record(device, b);
   std::vector<Found> found;
   for (std::size_t i = 0; i < of_a.size(); ++i) {
@@ -83,7 +79,7 @@ TANDEM_DEVICE_TEST("Another albedo is named where a path first meets it") {
   Scene other = scene;
   other.materials[red].base_color.x *= 0.9f;
   std::size_t differing = 0;
-  for (const Found& path : compare_scenes(device, scene, other)) {
+  for (const Found& path : compare_scenes(device_handle, scene, other)) {
     const auto meets_red = std::ranges::find_if(path.pairs, [&](const EventPair& pair) {
       return pair.kind() == EventKind::surface && pair.event().words[field(EventKind::surface, "material").word] == red;
     });
@@ -93,6 +89,8 @@ TANDEM_DEVICE_TEST("Another albedo is named where a path first meets it") {
     CHECK(path.pair().segment() == meets_red->segment());
     const bool value = path.pair().kind() == EventKind::light_value && path.field() == "bsdf";
     const bool weight = path.pair().kind() == EventKind::scatter && path.field() == "weight";
+    CAPTURE(name(path.pair().kind()));
+    CAPTURE(path.field());
     CHECK((value || weight));
     // A tenth of what it was: more than any rounding.
     CHECK(path.first->relative_difference > 0.01);
@@ -105,7 +103,7 @@ TANDEM_DEVICE_TEST("Another light is named where a path first sees it") {
   Scene other = scene;
   other.materials[material(scene, "light")].emission *= 1.25f;
   std::size_t differing = 0;
-  for (const Found& path : compare_scenes(device, scene, other)) {
+  for (const Found& path : compare_scenes(device_handle, scene, other)) {
     const auto sees_light = std::ranges::find_if(path.pairs, [](const EventPair& pair) {
       if (pair.kind() != EventKind::light_sample && pair.kind() != EventKind::emission) return false;
       return pair.event().vector(field(pair.kind(), "radiance").word) != glm::vec3(0);
@@ -131,7 +129,7 @@ TANDEM_DEVICE_TEST("A moved vertex is named by a ray or a surface of a triangle 
     return answer < triangles.size() && std::ranges::count(triangles[answer].vertices, moved) > 0;
   };
   std::size_t differing = 0;
-  for (const Found& path : compare_scenes(device, scene, other)) {
+  for (const Found& path : compare_scenes(device_handle, scene, other)) {
     if (!path.first) continue;
     ++differing;
     const EventKind kind = path.pair().kind();

@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "pathtracer/load/scene_loader.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 using namespace tandem::pathtracer;

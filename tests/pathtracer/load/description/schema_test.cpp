@@ -17,7 +17,8 @@
 #include "pathtracer/image/image_io.hpp"
 #include "pathtracer/load/scene_loader.hpp"
 #include "tests/pathtracer/load/description/json_schema.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/run_summary.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem;
 using Json = nlohmann::json;
@@ -239,10 +240,8 @@ TEST_CASE("The schema and the loader accept the scenes that ship, without a warn
 }
 
 TEST_CASE("Descriptions of the thesis's own files load") {
-  if (!std::filesystem::is_directory(source_directory.parent_path() / "shared" / "scenes" / "thesis")) {
-    MESSAGE("the thesis's files are not there, so their descriptions are not tested");
-    return;
-  }
+  const std::filesystem::path folder = source_directory.parent_path() / "shared" / "scenes" / "thesis";
+  if (!std::filesystem::is_directory(folder)) TANDEM_SKIP(folder.string() + " is not there");
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(source_directory / "scenes" / "thesis")) {
     CAPTURE(entry.path().string());

@@ -4,7 +4,7 @@
 
 #include "base/error.hpp"
 #include "pathtracer/load/gltf/loader.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 namespace tandem::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "pathtracer/load/gltf/loader.hpp"
 #include "tests/pathtracer/load/gltf/file.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using namespace tandem::test;

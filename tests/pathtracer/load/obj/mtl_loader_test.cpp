@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "base/error.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/error.hpp"
-#include "tests/pathtracer/scratch_folder.hpp"
+#include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
 using tandem::test::ScratchFolder;

@@ -1,4 +1,4 @@
-#include "tests/tools/process.hpp"
+#include "tests/support/process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -12,7 +12,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -42,8 +41,8 @@ struct Pipe {
 };
 
 /// Between fork and exec: only functions that are safe there. Does not return.
-[[noreturn]] void become_tandem(char* const* arguments, const ProcessOptions& options, const Pipe& output,
-                                const Pipe& errors) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, const ProcessOptions& options,
+                         const Pipe& output, const Pipe& errors) {
   dup2(output.ends[1], STDOUT_FILENO);
   dup2(errors.ends[1], STDERR_FILENO);
   if (!options.folder.empty() && chdir(options.folder.c_str()) != 0) _exit(126);
@@ -53,24 +52,56 @@ struct Pipe {
     const rlimit limit = {options.file_size_limit, options.file_size_limit};
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(126);
   }
-  execv(TANDEM_BINARY, arguments);
+  execve(arguments[0], arguments, environment);
   _exit(127);
+}
+
+/// As execve wants them.
+std::vector<char*> pointers(std::vector<std::string>& texts) {
+  std::vector<char*> result;
+  for (std::string& text : texts) result.push_back(text.data());
+  result.push_back(nullptr);
+  return result;
+}
+
+/// The variables of this process, but for those that `changed` (NAME=value) has.
+std::vector<std::string> with_environment(std::vector<std::string> changed) {
+  const std::vector<std::string> before = changed;
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    const std::string_view start = text.substr(0, text.find('=') + 1);
+    const auto has_name = [&](const std::string& each) { return each.starts_with(start); };
+    if (std::ranges::none_of(before, has_name)) changed.emplace_back(text);
+  }
+  return changed;
 }
 
 }  // namespace
 
-Outcome run_tandem(const std::vector<std::string>& arguments, const ProcessOptions& options) {
-  std::vector<std::string> words = {TANDEM_BINARY};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  pointers.push_back(nullptr);
+std::vector<std::string> words(std::string_view line, std::initializer_list<std::string_view> values) {
+  std::vector<std::string> result;
+  const std::string_view* value = values.begin();
+  std::istringstream stream{std::string(line)};
+  for (std::string word; stream >> word;) {
+    if (word == "{}" && value == values.end()) throw std::invalid_argument("no value for {} in: " + std::string(line));
+    result.push_back(word == "{}" ? std::string(*value++) : word);
+  }
+  if (value != values.end()) throw std::invalid_argument("more values than {} in: " + std::string(line));
+  return result;
+}
+
+Outcome run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
+                    const ProcessOptions& options) {
+  std::vector<std::string> all = {program.string()};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> variables = with_environment(options.environment);
+  const std::vector<char*> argument_pointers = pointers(all), variable_pointers = pointers(variables);
 
   Pipe output;
   Pipe errors;
   const pid_t child = fork();
   if (child < 0) fail("fork");
-  if (child == 0) become_tandem(pointers.data(), options, output, errors);
+  if (child == 0) become(argument_pointers.data(), variable_pointers.data(), options, output, errors);
   output.close_write_end();
   errors.close_write_end();
 
@@ -100,38 +131,8 @@ Outcome run_tandem(const std::vector<std::string>& arguments, const ProcessOptio
   return outcome;
 }
 
-TemporaryFolder::TemporaryFolder() {
-  std::string pattern = (std::filesystem::temp_directory_path() / "tandem-test-XXXXXX").string();
-  if (mkdtemp(pattern.data()) == nullptr) fail("mkdtemp");
-  path_ = pattern;
-}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
-}
-
-std::vector<std::string> TemporaryFolder::names() const {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(path_))
-    names.push_back(entry.path().filename().string());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string read_text(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw std::runtime_error("cannot read " + path.string());
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-void write_text(const std::filesystem::path& path, const std::string& text) {
-  std::ofstream stream(path, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (!stream) throw std::runtime_error("cannot write " + path.string());
+Outcome run_tandem(const std::vector<std::string>& arguments, const ProcessOptions& options) {
+  return run_program(TANDEM_BINARY, arguments, options);
 }
 
 }  // namespace tandem::test
