@@ -150,8 +150,10 @@ void Printer::measure_functions() {
       for (const auto& instruction : get<SPIRBlock>(block_id).ops) {
         ++size;
         if (instruction.op == spv::OpLine) has_line_numbers_ = true;
-        if (instruction.op == spv::OpFunctionCall)
-          size = std::min(size + self(self, view(instruction).operand(0)), 2 * inlining_limit);
+        if (instruction.op != spv::OpFunctionCall) continue;
+        const std::uint32_t callee = view(instruction).operand(0);
+        ++call_counts_[callee];
+        size = std::min(size + self(self, callee), 2 * inlining_limit);
       }
     }
     return inlined_size_[id] = size;
@@ -298,7 +300,9 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
   const bool is_entry = std::uint32_t(function.self) == std::uint32_t(ir.default_entry_point);
   processing_entry_point = is_entry;
   local_variable_names = resource_names;
-  const bool inlined = inlined_size_[ir.default_entry_point] <= inlining_limit;
+  // A call from one place only makes nothing longer.
+  const bool inlined = inlined_size_[ir.default_entry_point] <= inlining_limit || call_counts_[function.self] == 1 ||
+                       inlined_size_[function.self] <= 3000;
   std::string parameters;
   for (auto& parameter : function.arguments) {
     add_local_variable_name(parameter.id);
