@@ -3,10 +3,7 @@
 #ifndef TANDEM_PATH_TRACE
 #define TANDEM_PATH_TRACE
 
-#include "integrator/ambient_occlusion.glsl"
-#include "integrator/options.glsl"
 #include "integrator/path.glsl"
-#include "integrator/path_state.glsl"
 #include "scene.glsl"
 
 /// `position` is that of the invocation in the tile; beyond the tile or the picture there is nothing to do.
@@ -18,14 +15,9 @@ void path_trace(uvec2 position) {
 
   // One addition for each sample, in order, so that it does not matter how samples are split over dispatches.
   precise vec3 sum = vec3(radiance_sum[3 * index], radiance_sum[3 * index + 1], radiance_sum[3 * index + 2]);
-  bool occlusion = option_integrator() == INTEGRATOR_AMBIENT_OCCLUSION;
   uint ray_count = 0;
   for (uint i = 0; i < dispatch.sample_count; ++i) {
-    precise PathState state = camera_state(pixel, dispatch.first_sample + i);
-    uint end = CONTINUES;
-    while (end == CONTINUES) end = occlusion ? ambient_occlusion_segment(state) : path_segment(state);
-    sum += state.radiance;
-    ray_count += state.ray_count;
+    sum += path_radiance(pixel, dispatch.first_sample + i, ray_count);
   }
   radiance_sum[3 * index] = sum.x;
   radiance_sum[3 * index + 1] = sum.y;

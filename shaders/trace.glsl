@@ -25,14 +25,14 @@ const float RAY_LENGTH = 1e30;
 /// belongs to this ray alone: it decides which transparent triangles the ray meets.
 uint trace_closest(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   uint primitive = closest_primitive(origin, direction, t_max, key, dimension);
-  record_closest_ray(origin, direction, t_max, dimension, primitive, reported_hit);
+  TANDEM_RECORD(event_ray(RAY_CLOSEST, dimension, origin, t_max, direction, primitive, reported_hit);)
   return primitive;
 }
 
 /// Whether there is anything along a ray. The parameters as for trace_closest.
 bool trace_occluded(vec3 origin, vec3 direction, float t_max, RandomKey key, uint dimension) {
   bool occluded = is_occluded(origin, direction, t_max, key, dimension);
-  record_shadow_ray(origin, direction, t_max, dimension, occluded);
+  TANDEM_RECORD(event_ray(RAY_OCCLUSION, dimension, origin, t_max, direction, occluded ? 1u : 0u, no_reported_hit());)
   return occluded;
 }
 

@@ -16,7 +16,7 @@ TracedRay ray_of(const PathId& path, const PathEvent& event) {
       .direction = event.vector(event_word::ray_direction),
       .kind = static_cast<RayKind>(event.words[event_word::ray_kind]),
       .answer = event.words[event_word::ray_answer],
-      .random_pixel = path.pixel.x + (path.pixel.y << 16),  // of the RandomKey in shaders/integrator/path_state.glsl
+      .random_pixel = path.pixel.x + (path.pixel.y << 16),  // of the RandomKey in shaders/integrator/path.glsl
       .random_sample = path.sample,
       .random_dimension = event.words[event_word::ray_dimension]};
 }

@@ -14,9 +14,9 @@
 /// weighted against the sampling of the BSDF. `medium`: around the vertex. `segment`: the one that ends there.
 precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key, uint segment, inout uint ray_count) {
   Surface surface = vertex.surface;
-  uvec4 bits = sampler_bits(key, light_dimension(segment));
-  LightSample light = sample_light(surface.position, bits, time);
-  record_light_sample(bits, light);
+  LightSample light = sample_light(surface.position, sampler_bits(key, light_dimension(segment)), time);
+  TANDEM_RECORD(event_light_sample(sampler_bits(key, light_dimension(segment)), light.primitive, light.infinite,
+                                   light.direction, light.radiance, light.density, light.target);)
   if (light.primitive != NO_PRIMITIVE && light.primitive == vertex.primitive) return vec3(0.0);
   if (max_component(light.radiance) == 0.0) return vec3(0.0);
   precise vec3 wi = to_local(vertex.frame, light.direction);
@@ -24,11 +24,11 @@ precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key,
   precise float side = det_dot(light.direction, surface.geometric_normal) * wi.z;
   if (!(side > 0.0)) return vec3(0.0);
   precise BsdfValue found = vertex_value(vertex, wi);
-  found.value = drop_negligible(found.value);
-  if (max_component(found.value) == 0.0) return vec3(0.0);
+  precise vec3 value = drop_negligible(found.value);
+  if (max_component(value) == 0.0) return vec3(0.0);
   precise float weight = light_sample_weight(light.density, found.density);
   if (light.density > 0.0) weight = det_div(weight, light.density);
-  record_light_value(found, weight);
+  TANDEM_RECORD(event_light_value(value, found.density, weight);)
   if (!(weight > 0.0 && weight < 1e30)) return vec3(0.0);
 
   precise vec3 from = offset_point(surface.position, surface.geometric_normal, surface.offset, light.direction);
@@ -40,9 +40,9 @@ precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key,
   precise vec3 visible = visibility(from, direction, light.infinite ? RAY_LENGTH : 1.0,
                                     medium_after(vertex, medium, wi.z < 0.0), time, key, shadow_dimension(segment),
                                     ray_count);
-  record_visibility(visible);
+  TANDEM_RECORD(event_visibility(visible);)
   if (max_component(visible) == 0.0) return vec3(0.0);
-  return found.value * light.radiance * visible * weight;
+  return value * light.radiance * visible * weight;
 }
 
 #endif

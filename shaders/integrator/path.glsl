@@ -5,139 +5,231 @@
 #ifndef TANDEM_INTEGRATOR_PATH
 #define TANDEM_INTEGRATOR_PATH
 
-#include "integrator/boundary.glsl"
+#include "camera/camera.glsl"
 #include "integrator/direct_light.glsl"
 #include "integrator/events.glsl"
 #include "integrator/mis.glsl"
 #include "integrator/options.glsl"
-#include "integrator/path_state.glsl"
-#include "integrator/roulette.glsl"
 #include "integrator/vertex.glsl"
 #include "light/light.glsl"
 #include "sampling/sampler.glsl"
+#include "trace.glsl"
 
-/// Radiance of a surface that a ray meets, weighted against next event estimation.
-/// @param previous the vertex that scattered the ray
-precise vec3 weighted_emission(Surface surface, uint primitive, PreviousVertex previous, vec3 direction, float time) {
+// Roulette begins at the vertex that this many segments lie before, and always leaves at least one path in twenty to
+// die.
+const uint ROULETTE_DEPTH = 3;
+const float ROULETTE_SURVIVAL = 0.95;
+
+/// How the ray of a path came to be: what decides how much a light counts that it meets.
+struct Origin {
+  vec3 position;  // of the vertex that scattered it
+  float density;  // per solid angle; 0 if next event estimation could not have found its direction
+};
+
+/// Radiance of a surface that the ray meets, weighted against next event estimation.
+precise vec3 weighted_emission(Surface surface, uint primitive, Origin origin, vec3 direction, float time) {
   vec3 radiance = emitted_radiance(surface.material, surface.texture_coordinates, surface.position);
-  if (max_component(radiance) == 0.0 || previous.density == 0.0) return radiance;
+  if (max_component(radiance) == 0.0 || origin.density == 0.0) return radiance;
   float density =
-      light_density(primitive, previous.position, direction, surface.position, surface.geometric_normal, time);
-  return radiance * scattered_weight(previous.density, density);
+      light_density(primitive, origin.position, direction, surface.position, surface.geometric_normal, time);
+  return radiance * scattered_weight(origin.density, density);
 }
 
 /// Radiance from beyond the scene, likewise.
-precise vec3 weighted_environment(PreviousVertex previous, vec3 direction) {
+precise vec3 weighted_environment(Origin origin, vec3 direction) {
   vec3 radiance = environment_radiance(direction);
-  if (!FEATURE_LIGHTS || previous.density == 0.0) return radiance;
-  return radiance * scattered_weight(previous.density, environment_density(direction));
+  if (!FEATURE_LIGHTS || origin.density == 0.0) return radiance;
+  return radiance * scattered_weight(origin.density, environment_density(direction));
 }
 
-/// The light that a ray runs into: that of a surface, or with NO_PRIMITIVE from beyond the scene.
-precise vec3 arriving_light(Surface surface, uint primitive, PreviousVertex previous, vec3 direction, float time) {
-  if (primitive == NO_PRIMITIVE) return weighted_environment(previous, direction);
-  return weighted_emission(surface, primitive, previous, direction, time);
+/// Whether a scattered direction is on the side of the true surface that its lobe says. Interpolated normals can send
+/// it to the other.
+bool on_its_side(Surface surface, BsdfSample scattered, vec3 direction) {
+  precise float cosine = det_dot(direction, surface.geometric_normal);
+  return (scattered.lobe & LOBE_TRANSMISSION) != 0 ? cosine < 0.0 : cosine > 0.0;
 }
 
-/// Where a ray scatters within a medium: a vertex of which only the direction of travel is known.
-precise Surface point_in_medium(vec3 position, vec3 direction) {
-  Surface point;
-  point.position = position;
-  point.geometric_normal = direction;
-  point.shading_normal = direction;
-  point.offset = 0.0;
-  point.outside = false;
-  point.material = 0;
-  point.texture_coordinates = vec2(0.0);
-  return point;
-}
+/// Radiance that arrives at the camera along one random path through a pixel. Adds the rays it traces to ray_count.
+precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count) {
+  RandomKey key;
+  key.pixel = pixel.x + (pixel.y << 16);
+  key.sample_index = sample_index;
+  key.seed = render.seed;
+  precise float time = shutter_time(key);
+  precise CameraRay camera = camera_ray(pixel, key, time);
+  precise vec3 origin = camera.origin;
+  precise vec3 direction = camera.direction;
+  bool occlusion = option_integrator() == INTEGRATOR_AMBIENT_OCCLUSION;
+  uint max_depth = occlusion ? 2 : render.max_depth;
+  float ray_length = RAY_LENGTH;
 
-/// Traces the path's next segment and scatters at its end: CONTINUES, or END_*.
-uint path_segment(inout precise PathState state) {
-  state.ray_count += 1;
-  precise Vertex vertex;
-  vertex.in_medium = false;
-  vertex.primitive =
-      trace_closest(state.origin, state.direction, state.ray_length, state.key, segment_dimension(state.segment));
-  if (vertex.primitive != NO_PRIMITIVE) {
-    vertex.surface = surface_at(vertex.primitive, state.origin, state.direction, state.time);
-    record_surface(vertex.surface);
-  }
-  if (FEATURE_MEDIA && state.medium != NO_MEDIUM) {
-    precise float distance = RAY_LENGTH;
-    if (vertex.primitive != NO_PRIMITIVE) distance = det_length(vertex.surface.position - state.origin);
-    uvec2 bits = sampler_bits(state.key, medium_dimension(state.segment)).xy;
-    precise MediumSample reached = sample_medium(state.medium, state.throughput, distance, bits);
-    record_medium(bits, reached);
-    state.throughput = drop_negligible(state.throughput * reached.weight);
-    if (max_component(state.throughput) == 0.0) return END_ABSORBED;
-    if (reached.scattered) {
-      vertex.in_medium = true;
-      vertex.primitive = NO_PRIMITIVE;
-      vertex.surface = point_in_medium(state.origin + state.direction * reached.distance, state.direction);
-      vertex.anisotropy = media[state.medium].anisotropy;
-      vertex.has_density = true;
+  precise vec3 radiance = vec3(0.0);
+  precise vec3 throughput = vec3(1.0);
+  precise float eta_scale = 1.0;  // the product of eta^2 since the camera; the throughput holds its inverse
+  uint medium = render.medium;
+  precise Origin scatterer;
+  scatterer.position = origin;
+  scatterer.density = 0.0;
+  ScatteringCount scattering_count;
+  scattering_count.diffuse = 0;
+  scattering_count.glossy = 0;
+  scattering_count.specular = 0;
+
+  // Boundaries of media end a segment, but add nothing to the depth.
+  uint crossings = 0;
+  TANDEM_RECORD(if (resumes_path()) {
+    resumed_depth = state_word(2);
+    crossings = state_word(3);
+    origin = state_vector(4);
+    scatterer.density = state_number(7);
+    direction = state_vector(8);
+    eta_scale = state_number(11);
+    throughput = state_vector(12);
+    medium = state_word(15);
+    radiance = state_vector(16);
+    ray_length = state_number(19);
+    scatterer.position = state_vector(20);
+    scattering_count.diffuse = state_word(23);
+    scattering_count.glossy = state_word(24);
+    scattering_count.specular = state_word(25);
+  } else event_camera(pixel, sample_index, time, origin, direction);)
+  TANDEM_RECORD(uint end_reason = END_DEPTH;)
+  for (uint depth = PATH_FIRST_DEPTH; depth < max_depth; ++depth) {
+    uint segment = depth + crossings;
+    TANDEM_RECORD(end_reason = END_LIMIT;)
+    TANDEM_RECORD(if (!event_segment(depth, crossings, origin, direction, ray_length, throughput, radiance, eta_scale,
+                                     medium, scatterer.position, scatterer.density, scattering_count.diffuse,
+                                     scattering_count.glossy, scattering_count.specular)) break;)
+    TANDEM_RECORD(end_reason = END_DEPTH;)
+    ray_count += 1;
+    uint primitive = trace_closest(origin, direction, ray_length, key, segment_dimension(segment));
+    precise Vertex vertex;
+    vertex.in_medium = false;
+    if (primitive != NO_PRIMITIVE) vertex.surface = surface_at(primitive, origin, direction, time);
+    TANDEM_RECORD(if (primitive != NO_PRIMITIVE) event_surface(vertex.surface.material, vertex.surface.outside,
+                                                               vertex.surface.position, vertex.surface.offset,
+                                                               vertex.surface.geometric_normal,
+                                                               vertex.surface.shading_normal,
+                                                               vertex.surface.texture_coordinates);)
+
+    if (FEATURE_MEDIA && medium != NO_MEDIUM && !occlusion) {
+      precise float surface_distance = RAY_LENGTH;
+      if (primitive != NO_PRIMITIVE) surface_distance = det_length(vertex.surface.position - origin);
+      uvec2 medium_bits = sampler_bits(key, medium_dimension(segment)).xy;
+      precise MediumSample reached = sample_medium(medium, throughput, surface_distance, medium_bits);
+      throughput = drop_negligible(throughput * reached.weight);
+      TANDEM_RECORD(event_medium(medium_bits, reached.scattered, reached.distance, reached.weight);)
+      TANDEM_RECORD(end_reason = END_ABSORBED;)
+      if (max_component(throughput) == 0.0) break;
+      TANDEM_RECORD(end_reason = END_DEPTH;)
+      if (reached.scattered) {
+        vertex.in_medium = true;
+        primitive = NO_PRIMITIVE;
+        vertex.surface.position = origin + direction * reached.distance;
+        vertex.surface.geometric_normal = direction;
+        vertex.surface.shading_normal = direction;
+        vertex.surface.offset = 0.0;
+        vertex.anisotropy = media[medium].anisotropy;
+        vertex.has_density = true;
+      }
     }
-  }
-  if (!vertex.in_medium) {
-    if (vertex.primitive != NO_PRIMITIVE && is_boundary(vertex.surface.material))
-      return cross_boundary(state, vertex.surface);
-    precise vec3 emission =
-        arriving_light(vertex.surface, vertex.primitive, state.previous, state.direction, state.time);
-    precise vec3 contribution = clamped(state.throughput * emission, state.depth + 1);
-    state.radiance += contribution;
-    record_emission(vertex.primitive == NO_PRIMITIVE, emission, contribution);
-    if (vertex.primitive == NO_PRIMITIVE) return END_ESCAPED;
-  }
-  if (state.depth + 1 >= render.max_depth || exceeds_depths(state.scattering_count)) return END_DEPTH;
 
-  vertex.frame = make_frame(vertex.surface.shading_normal);
-  vertex.wo = to_local(vertex.frame, -state.direction);
-  if (!vertex.in_medium) {
-    vertex.parameters = bsdf_parameters(vertex.surface.material, vertex.surface.outside,
-                                        vertex.surface.texture_coordinates, vertex.surface.position);
-    vertex.has_density = bsdf_has_density(vertex.parameters);
-  }
-  bool estimates_lights = vertex.has_density && samples_lights();
-  if (estimates_lights) {
-    precise vec3 light =
-        direct_light(vertex, state.medium, state.time, state.key, state.segment, state.ray_count);
-    precise vec3 contribution = clamped(state.throughput * light, state.depth + 2);
-    state.radiance += contribution;
-    record_direct_light(contribution);
-  }
+    if (!vertex.in_medium) {
+      if (primitive == NO_PRIMITIVE) {
+        TANDEM_RECORD(end_reason = END_ESCAPED;)
+        TANDEM_RECORD(if (occlusion) event_end(end_reason, throughput, ray_count);)
+        if (occlusion) return throughput;
+        precise vec3 surroundings = weighted_environment(scatterer, direction);
+        precise vec3 contribution = clamped(throughput * surroundings, depth + 1);
+        radiance += contribution;
+        TANDEM_RECORD(event_emission(true, surroundings, contribution);)
+        break;
+      }
+      if (is_boundary(vertex.surface.material)) {
+        medium = medium_beyond(vertex.surface.material, vertex.surface.outside);
+        origin = offset_point(vertex.surface.position, vertex.surface.geometric_normal, vertex.surface.offset, direction);
+        TANDEM_RECORD(end_reason = END_CROSSINGS;)
+        if (crossings == MAX_CROSSINGS) break;
+        crossings += 1;
+        depth -= 1;  // 0 - 1 + 1 is 0
+        continue;
+      }
+      TANDEM_RECORD(if (occlusion && depth == 1) event_end(END_OCCLUDED, vec3(0.0), ray_count);)
+      if (occlusion && depth == 1) return vec3(0.0);
+      if (!occlusion) {
+        precise vec3 emission = weighted_emission(vertex.surface, primitive, scatterer, direction, time);
+        precise vec3 contribution = clamped(throughput * emission, depth + 1);
+        radiance += contribution;
+        TANDEM_RECORD(event_emission(false, emission, contribution);)
+      }
+    }
+    if (depth + 1 == max_depth || exceeds_depths(scattering_count)) break;
 
-  uvec4 bits = sampler_bits(state.key, scattering_dimension(state.segment));
-  vec3 u = vec3(unit_interval(bits.x), unit_interval(bits.y), unit_interval(bits.z));
-  precise BsdfSample scattered;
-  precise vec3 direction;
-  bool leaves = false;
-  for (uint attempt = 0; attempt < 2 && !leaves; ++attempt) {
-    scattered = vertex_sample(vertex, u);
-    direction = to_world(vertex.frame, scattered.direction);
-    leaves = vertex.in_medium || on_its_side(vertex.surface, scattered, direction);
-    // A density just loses this part of its lobe; a specular lobe would lose all, so there the geometric normal
-    // decides.
-    if (vertex.has_density) break;
-    vertex.frame = make_frame(vertex.surface.geometric_normal);
-    vertex.wo = to_local(vertex.frame, -state.direction);
+    vertex.primitive = primitive;
+    vertex.frame = make_frame(vertex.surface.shading_normal);
+    vertex.wo = to_local(vertex.frame, -direction);
+    if (!vertex.in_medium) {
+      vertex.parameters = bsdf_parameters(vertex.surface.material, vertex.surface.outside,
+                                          vertex.surface.texture_coordinates, vertex.surface.position);
+      // Occlusion is what a white diffuse surface under a white sky shows.
+      if (occlusion) {
+        vertex.parameters.model = MATERIAL_DIFFUSE;
+        vertex.parameters.base_color = vec3(1.0);
+        ray_length = render.occlusion_length;
+      }
+      vertex.has_density = bsdf_has_density(vertex.parameters);
+    }
+    bool estimates_lights = vertex.has_density && samples_lights() && !occlusion;
+    if (estimates_lights) {
+      precise vec3 light = direct_light(vertex, medium, time, key, segment, ray_count);
+      precise vec3 contribution = clamped(throughput * light, depth + 2);
+      radiance += contribution;
+      TANDEM_RECORD(event_direct_light(contribution);)
+    }
+
+    uvec4 bits = sampler_bits(key, scattering_dimension(segment));
+    vec3 u = vec3(unit_interval(bits.x), unit_interval(bits.y), unit_interval(bits.z));
+    precise BsdfSample scattered;
+    precise vec3 next_direction;
+    bool leaves = false;
+    for (uint attempt = 0; attempt < 2 && !leaves; ++attempt) {
+      scattered = vertex_sample(vertex, u);
+      next_direction = to_world(vertex.frame, scattered.direction);
+      leaves = vertex.in_medium || on_its_side(vertex.surface, scattered, next_direction);
+      // A density just loses this part of its lobe; a specular lobe would lose all, so there the geometric normal
+      // decides.
+      if (vertex.has_density) break;
+      vertex.frame = make_frame(vertex.surface.geometric_normal);
+      vertex.wo = to_local(vertex.frame, -direction);
+    }
+    TANDEM_RECORD(event_scatter(bits, vertex.in_medium ? NO_MATERIAL_MODEL : vertex.parameters.model, scattered.lobe,
+                                leaves, next_direction, scattered.weight, scattered.density, scattered.eta);)
+    TANDEM_RECORD(end_reason = END_SIDE;)
+    if (!leaves) break;
+
+    throughput = drop_negligible(throughput * scattered.weight);
+    TANDEM_RECORD(end_reason = END_ABSORBED;)
+    if (max_component(throughput) == 0.0) break;
+    eta_scale *= scattered.eta * scattered.eta;
+    if (depth >= ROULETTE_DEPTH && option_roulette()) {
+      precise float survival = max_component(throughput) * eta_scale;
+      survival = survival < ROULETTE_SURVIVAL ? survival : ROULETTE_SURVIVAL;
+      TANDEM_RECORD(event_roulette(bits.w, survival, unit_interval(bits.w) < survival);)
+      TANDEM_RECORD(end_reason = END_ROULETTE;)
+      if (unit_interval(bits.w) >= survival) break;
+      throughput *= det_div(1.0, survival);
+    }
+    medium = medium_after(vertex, medium, (scattered.lobe & LOBE_TRANSMISSION) != 0);
+    count_scattering(scattering_count, scattered.lobe);
+    scatterer.position = vertex.surface.position;
+    scatterer.density = estimates_lights ? scattered.density : 0.0;
+    origin = offset_point(vertex.surface.position, vertex.surface.geometric_normal, vertex.surface.offset,
+                          next_direction);
+    direction = next_direction;
+    TANDEM_RECORD(end_reason = END_DEPTH;)
   }
-  record_scatter(bits, vertex, scattered, leaves, direction);
-  if (!leaves) return END_SIDE;
-  state.throughput = drop_negligible(state.throughput * scattered.weight);
-  if (max_component(state.throughput) == 0.0) return END_ABSORBED;
-  state.eta_scale *= scattered.eta * scattered.eta;
-  if (!survives_roulette(state.throughput, state.eta_scale, state.depth, bits.w)) return END_ROULETTE;
-  state.medium = medium_after(vertex, state.medium, (scattered.lobe & LOBE_TRANSMISSION) != 0);
-  count_scattering(state.scattering_count, scattered.lobe);
-  state.previous.position = vertex.surface.position;
-  state.previous.density = estimates_lights ? scattered.density : 0.0;
-  state.origin =
-      offset_point(vertex.surface.position, vertex.surface.geometric_normal, vertex.surface.offset, direction);
-  state.direction = direction;
-  state.segment += 1;
-  state.depth += 1;
-  return CONTINUES;
+  TANDEM_RECORD(event_end(end_reason, radiance, ray_count);)
+  return radiance;
 }
 
 #endif

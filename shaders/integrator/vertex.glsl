@@ -42,13 +42,6 @@ uint medium_after(Vertex vertex, uint medium, bool transmitted) {
   return medium_beyond(vertex.surface.material, vertex.surface.outside);
 }
 
-/// Whether a scattered direction is on the side of the true surface that its lobe says. Interpolated normals can send
-/// it to the other.
-bool on_its_side(Surface surface, BsdfSample scattered, vec3 direction) {
-  precise float cosine = det_dot(direction, surface.geometric_normal);
-  return (scattered.lobe & LOBE_TRANSMISSION) != 0 ? cosine < 0.0 : cosine > 0.0;
-}
-
 /// A scattered direction. u in [0, 1)^3.
 precise BsdfSample vertex_sample(Vertex vertex, vec3 u) {
   if (FEATURE_MEDIA && vertex.in_medium) {

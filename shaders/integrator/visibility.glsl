@@ -26,7 +26,7 @@ precise vec3 visibility(vec3 origin, vec3 direction, float t_max, uint medium, f
   precise vec3 left = vec3(1.0);
   for (uint crossing = 0; crossing < MAX_CROSSINGS; ++crossing) {
     ray_count += 1;
-    flush_events();  // the segment's own ray waits in the same place
+    TANDEM_RECORD(flush_events();)  // the segment's own ray waits in the same place
     uint primitive = trace_closest(origin, direction, t_max, key, dimension);
     if (primitive == NO_PRIMITIVE) {
       left *= medium_transmittance(medium, t_max == 1.0 ? det_length(direction) : RAY_LENGTH);

@@ -94,7 +94,7 @@ std::vector<Fault> shading_faults() {
   faults.add("hash-without-shift", "the hash of random numbers leaves out its shift", plain_scene,
              shader_edits(edited_results("pcg4d", spv::OpShiftRightLogical, lost)), "camera", {"direction"});
   faults.add("roulette-uncompensated", "paths that survive roulette count no more for it", plain_scene,
-             shader_edits(edited_calls("survives_roulette", "det_div(f1;f1;", one)), "segment", {"throughput"}, 3);
+             shader_edits(edited_calls("path_radiance", "det_div(f1;f1;", one)), "segment", {"throughput"}, 3);
   faults.add("refraction-inverted", "the index of refraction is that of the way back", glass_scene,
              shader_edits(edited_returns("relative_index", inverse)), "scatter", {"lobe", "direction"});
   faults.add("fresnel-inverted", "glass reflects what it should transmit", glass_scene,
