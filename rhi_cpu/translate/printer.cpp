@@ -1,6 +1,7 @@
 #include "rhi_cpu/translate/printer.hpp"
 
 #include <algorithm>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -141,19 +142,50 @@ void Printer::set_up_variables() {
   });
 }
 
+std::vector<std::uint32_t> Printer::live_blocks(std::uint32_t function) const {
+  // Specialisation constants are constants by now, so what a feature would need is behind a branch that is never taken.
+  std::vector<std::uint32_t> found{get<SPIRFunction>(function).entry_block};
+  std::unordered_set<std::uint32_t> known(found.begin(), found.end());
+  const auto visit = [&](std::uint32_t block) {
+    if (block != 0 && known.insert(block).second) found.push_back(block);
+  };
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const SPIRBlock& block = get<SPIRBlock>(found[i]);
+    switch (block.terminator) {
+      case SPIRBlock::Direct:
+        visit(block.next_block);
+        break;
+      case SPIRBlock::Select:
+        if (const auto* condition = maybe_get<SPIRConstant>(block.condition)) {
+          visit(condition->scalar() != 0 ? block.true_block : block.false_block);
+        } else {
+          visit(block.true_block);
+          visit(block.false_block);
+        }
+        break;
+      case SPIRBlock::MultiSelect:
+        visit(block.default_block);
+        for (const auto& each : block.cases_32bit) visit(each.block);
+        for (const auto& each : block.cases_64bit) visit(each.block);
+        break;
+      default:
+        break;
+    }
+  }
+  return found;
+}
+
 void Printer::measure_functions() {
   // SPIR-V forbids recursion, so this ends.
   const auto measure = [&](const auto& self, std::uint32_t id) -> std::uint64_t {
     if (const auto known = inlined_size_.find(id); known != inlined_size_.end()) return known->second;
     std::uint64_t size = 0;
-    for (const auto& block_id : get<SPIRFunction>(id).blocks) {
-      for (const auto& instruction : get<SPIRBlock>(block_id).ops) {
+    for (const std::uint32_t block : live_blocks(id)) {
+      for (const auto& instruction : get<SPIRBlock>(block).ops) {
         ++size;
         if (instruction.op == spv::OpLine) has_line_numbers_ = true;
-        if (instruction.op != spv::OpFunctionCall) continue;
-        const std::uint32_t callee = view(instruction).operand(0);
-        ++call_counts_[callee];
-        size = std::min(size + self(self, callee), 2 * inlining_limit);
+        if (instruction.op == spv::OpFunctionCall)
+          size = std::min(size + self(self, view(instruction).operand(0)), 2 * inlining_limit);
       }
     }
     return inlined_size_[id] = size;
@@ -300,9 +332,7 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
   const bool is_entry = std::uint32_t(function.self) == std::uint32_t(ir.default_entry_point);
   processing_entry_point = is_entry;
   local_variable_names = resource_names;
-  // A call from one place only makes nothing longer.
-  const bool inlined = inlined_size_[ir.default_entry_point] <= inlining_limit || call_counts_[function.self] == 1 ||
-                       inlined_size_[function.self] <= 3000;
+  const bool inlined = inlined_size_[ir.default_entry_point] <= inlining_limit;
   std::string parameters;
   for (auto& parameter : function.arguments) {
     add_local_variable_name(parameter.id);

@@ -75,6 +75,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   void set_up_backend();
   void set_up_names();
   void set_up_variables();
+  /// Blocks of a function that can be reached, whatever is not constant.
+  std::vector<std::uint32_t> live_blocks(std::uint32_t function) const;
   void measure_functions();
   void print_module();
   void print_members();
@@ -227,7 +229,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string struct_declarations_;
   std::unordered_set<std::uint32_t> composite_constants_;
   std::unordered_map<std::uint32_t, std::uint64_t> inlined_size_;  ///< instructions of a function with all its callees
-  std::unordered_map<std::uint32_t, std::uint32_t> call_counts_;   ///< of functions: places that call them
   bool has_line_numbers_ = false;
   std::unordered_map<std::uint32_t, std::uint32_t> built_in_types_;  ///< of the variable of a built-in
   std::unordered_set<std::uint32_t> ending_functions_;               ///< a call to one may end the shader
