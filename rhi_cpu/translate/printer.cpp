@@ -165,8 +165,7 @@ std::vector<std::uint32_t> Printer::live_blocks(std::uint32_t function) const {
         break;
       case SPIRBlock::MultiSelect:
         visit(block.default_block);
-        for (const auto& each : block.cases_32bit) visit(each.block);
-        for (const auto& each : block.cases_64bit) visit(each.block);
+        for (const auto& each : get_case_list(block)) visit(each.block);
         break;
       default:
         break;

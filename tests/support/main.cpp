@@ -46,7 +46,7 @@ int run(int argument_count, char** arguments) {
   for (const std::string& warning : release_devices()) fail("while the devices were destroyed: " + warning);
   const RunSummary& summary = RunSummary::of_this_run();
   std::cout << summary.skips();
-  for (const std::string& sentence : summary.idle_devices()) fail(sentence);
+  for (const std::string& sentence : summary.idle_devices(device_names())) fail(sentence);
   return result == EXIT_SUCCESS && summary.skipped_all() ? skipped_exit_code : result;
 }
 

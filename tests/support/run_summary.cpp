@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "tests/support/device_test.hpp"
-
 namespace tandem::test {
 
 RunSummary& RunSummary::of_this_run() {
@@ -55,12 +53,12 @@ std::string RunSummary::skips() const {
   return text;
 }
 
-std::vector<std::string> RunSummary::idle_devices() const {
+std::vector<std::string> RunSummary::idle_devices(const std::vector<std::string>& names) const {
   std::vector<std::string> sentences;
   if (!any_started_) return sentences;  // cases were only listed or counted
   for (const auto& [index, device] : devices_) {
     if (device.filtered_out != 0 || device.executed != 0) continue;
-    sentences.push_back("Device " + device_names()[index] + " ran none of its " + std::to_string(device.registered) +
+    sentences.push_back("Device " + names[index] + " ran none of its " + std::to_string(device.registered) +
                         " test cases.");
   }
   return sentences;

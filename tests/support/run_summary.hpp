@@ -27,7 +27,8 @@ class RunSummary {
   /// Lines for people: how many cases were skipped and why; empty if none was.
   std::string skips() const;
   /// A sentence for each device that has cases, none of which a filter left out, and ran none of them.
-  std::vector<std::string> idle_devices() const;
+  /// @param names device_names()
+  std::vector<std::string> idle_devices(const std::vector<std::string>& names) const;
   /// Cases were to run, and each of them was skipped.
   bool skipped_all() const { return executed_ == 0 && !skipped_.empty(); }
 

@@ -8,7 +8,7 @@
 
 #include "base/statistics/means.hpp"
 #include "compare/study/convergence.hpp"
-#include "tests/shaders/sampler_draws.hpp"
+#include "tests/shaders/sampling/sampler_draws.hpp"
 #include "tests/support/device_test.hpp"
 #include "tests/support/statistics/chi_square.hpp"
 

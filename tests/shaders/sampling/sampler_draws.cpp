@@ -1,4 +1,4 @@
-#include "tests/shaders/sampler_draws.hpp"
+#include "tests/shaders/sampling/sampler_draws.hpp"
 
 #include "tests/shaders/function_kernel.hpp"
 
