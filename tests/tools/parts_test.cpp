@@ -47,7 +47,7 @@ TEST_CASE("a result that cannot be written anywhere is an error with both reason
   const auto fails = [](const std::filesystem::path&) { throw std::runtime_error("the disk is full"); };
   const OutputFile file{"x.txt", fails};
   CHECK_THROWS_WITH_AS(write_or_rescue({&file, 1}),
-                       "the disk is full; nor could it be saved elsewhere: the disk is full", tandem::Error);
+                       "the disk is full; saving it elsewhere failed too: the disk is full", tandem::Error);
 }
 
 TEST_CASE("a folder for results goes again unless something was written into it") {
