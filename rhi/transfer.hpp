@@ -21,15 +21,16 @@ BufferHandle create_filled(Device& device, CommandList& list, std::span<const st
 BufferHandle create_filled(Device& device, std::span<const std::byte> bytes, BufferUsage usage,
                            const std::string& label);
 
-/// A new buffer of values that lie one after the other: a std::vector, std::array or std::span of them.
+/// A new buffer of values that lie one after the other: a std::vector, std::array or std::span of them. (The bytes of
+/// an array have a static extent, so they are converted, lest these call themselves.)
 template <std::ranges::contiguous_range Values>
 BufferHandle create_filled(Device& device, CommandList& list, const Values& values, BufferUsage usage,
                            const std::string& label) {
-  return create_filled(device, list, std::as_bytes(std::span(values)), usage, label);
+  return create_filled(device, list, std::span<const std::byte>(std::as_bytes(std::span(values))), usage, label);
 }
 template <std::ranges::contiguous_range Values>
 BufferHandle create_filled(Device& device, const Values& values, BufferUsage usage, const std::string& label) {
-  return create_filled(device, std::as_bytes(std::span(values)), usage, label);
+  return create_filled(device, std::span<const std::byte>(std::as_bytes(std::span(values))), usage, label);
 }
 
 /// Waits for everything submitted, then reads `count` T from byte `offset` of the buffer on.
