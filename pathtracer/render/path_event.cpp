@@ -10,15 +10,14 @@ bool PathSummary::operator==(const PathSummary& other) const {
 }
 
 TracedRay ray_of(const PathId& path, const PathEvent& event) {
-  return {
-      .origin = event.vector(event_word::ray_origin),
-      .t_max = event.number(event_word::ray_t_max),
-      .direction = event.vector(event_word::ray_direction),
-      .kind = static_cast<RayKind>(event.words[event_word::ray_kind]),
-      .answer = event.words[event_word::ray_answer],
-      .random_pixel = path.pixel.x + (path.pixel.y << 16),  // of the RandomKey in shaders/integrator/path.glsl
-      .random_sample = path.sample,
-      .random_dimension = event.words[event_word::ray_dimension]};
+  return {.origin = event.vector(event_word::ray_origin),
+          .t_max = event.number(event_word::ray_t_max),
+          .direction = event.vector(event_word::ray_direction),
+          .kind = static_cast<RayKind>(event.words[event_word::ray_kind]),
+          .answer = event.words[event_word::ray_answer],
+          .random_pixel = path.pixel.x + (path.pixel.y << 16),  // of the RandomKey in shaders/integrator/path.glsl
+          .random_sample = path.sample,
+          .random_dimension = event.words[event_word::ray_dimension]};
 }
 
 std::vector<TracedRay> rays_of(const PathId& path, std::span<const PathEvent> events) {
