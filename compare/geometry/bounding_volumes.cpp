@@ -9,7 +9,7 @@
 
 #include "compare/geometry/rounding.hpp"
 
-// rhi_cpu/trace/exact/bvh.cpp splits the tree of the device cpu-exact in the same way. The two share no code on
+// The device cpu-exact splits its own tree of boxes in the same way. The two share no code on
 // purpose: the reference tracer of the probes, which uses this one, checks that device too, and a fault that they had
 // in common would stay unseen.
 

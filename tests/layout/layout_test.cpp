@@ -22,7 +22,6 @@ struct KnownCircle {
 };
 
 const std::vector<KnownCircle> known_circles_of_folders = {
-    {{"tools", "tools/report"}, "commands and their reports are being taken apart"},
     {{"tests/shaders", "tests/support/statistics"},
      "the test of chi_square draws with the random source of the shaders"},
 };
