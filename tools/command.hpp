@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
+#include "compare/verdict/verdict.hpp"
+
 /// The commands of the command line. Each add_*_command declares a subcommand of `app` with its options; when the
 /// command line names it, `action` becomes what it asks for. An action prints its results to standard output, returns
 /// the exit code, and throws std::exception with one clear sentence when it cannot do what was asked.
@@ -12,11 +14,19 @@ using Action = std::function<int()>;
 
 namespace exit_code {
 inline constexpr int success = 0;
-inline constexpr int differ = 1;  ///< the images do not agree (diff, matrix, gallery, suite); a mismatch (explain)
+inline constexpr int differ = 1;  ///< the images differ (diff, matrix, gallery, suite); a mismatch (explain)
 inline constexpr int failed = 1;  ///< `tandem conformance`: a device does not do what it must
 inline constexpr int error = 2;
+inline constexpr int explained = 3;  ///< the images differ, but for reasons that the scene owns (diff, gallery, suite)
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
 }  // namespace exit_code
+
+/// The exit code of a command whose result is the outcome.
+constexpr int exit_code_of(compare::Outcome outcome) {
+  return outcome == compare::Outcome::agree       ? exit_code::success
+         : outcome == compare::Outcome::explained ? exit_code::explained
+                                                  : exit_code::differ;
+}
 
 void add_devices_command(CLI::App& app, Action& action);
 void add_render_command(CLI::App& app, Action& action);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "compare/geometry/footprint.hpp"
 #include "pathtracer/render/traced_ray.hpp"
 #include "pathtracer/scene/scene.hpp"
 
@@ -37,9 +38,13 @@ struct Arbitration {
 using ExactTracer = std::function<std::vector<std::uint32_t>(std::span<const pathtracer::TracedRay> rays)>;
 
 /// Arbitrates each dispute. An answer is right when it is the exact one. It is right within rounding when some ray that
-/// differs from this one by no more than tolerated_ulp (compare/geometry/rounding.hpp) has it exactly, or when the ray
-/// passes its triangle (not its sphere) that closely, no farther away than the exact hit.
+/// differs from this one by no more than the tolerance has it exactly, or when the ray passes its triangle (not its
+/// sphere) that closely, no farther away than the exact hit. The tolerance is tolerated_ulp
+/// (compare/geometry/rounding.hpp) of the coordinates, but no more than a tenth of a pixel: what can be seen is no
+/// rounding, however large the coordinates are. Two triangles that share the edge beside the ray are right where single
+/// precision cannot tell its sides apart.
+/// @param footprint of the picture that the rays belong to
 std::vector<Arbitration> arbitrate(std::span<const Dispute> disputes, const pathtracer::Scene& scene,
-                                   const ExactTracer& trace);
+                                   const PixelFootprint& footprint, const ExactTracer& trace);
 
 }  // namespace tandem::compare

@@ -106,8 +106,9 @@ void resolve_by_arbiter(const Devices& devices, const Scene& scene, std::span<Cl
     ends.push_back(disputes.size());
   }
   if (disputes.empty()) return;
+  const PixelFootprint footprint = footprint_of(devices.a.camera(), devices.a.settings().height);
   const std::vector<Arbitration> arbitrations =
-      arbitrate(disputes, scene,
+      arbitrate(disputes, scene, footprint,
                 [&](std::span<const pathtracer::TracedRay> rays) { return pathtracer::trace(devices.arbiter, rays); });
   std::size_t begin = 0;
   for (std::size_t i = 0; i < segments.size(); begin = ends[i++])

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "compare/cause/unexplained_difference.hpp"
 #include "compare/probe/ray.hpp"
 
 namespace tandem::compare {
@@ -80,6 +81,7 @@ Comparison compare_devices(Session& session, const StageProgress& progress) {
                                      options.classification, watched);
     if (cancelled) throw Cancelled();
     evidence.mismatches = result.classification->mismatches();
+    evidence.unexplained = leave_out_explained(*result.classification, result.a.image, result.b.image);
   }
   result.verdict = make_verdict(evidence, result.thresholds);
   return result;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
+#include <utility>
 
 namespace tandem::compare {
 namespace {
@@ -80,27 +82,57 @@ class RuleCheck {
   std::vector<std::string> reasons_;
 };
 
+/// The sentences of the rules about images that do not hold.
+std::vector<std::string> broken_rules(const Metrics& metrics, const Thresholds& thresholds) {
+  RuleCheck rules(thresholds);
+  if (thresholds.tier == Tier::exact)
+    rules.check_exact(metrics);
+  else
+    rules.check_tolerance(metrics);
+  return std::move(rules).reasons();
+}
+
 }  // namespace
 
-Verdict make_verdict(const Evidence& evidence, const Thresholds& thresholds) {
-  RuleCheck rules(thresholds);
-  rules.check_counts(evidence);
-  switch (thresholds.tier) {
-    case Tier::exact:
-      rules.check_exact(evidence.metrics);
-      break;
-    case Tier::tolerance:
-      rules.check_tolerance(evidence.metrics);
-      break;
-    case Tier::statistical:
-      rules.check_bias(evidence.bias);
-      break;
+const char* name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::agree:
+      return "agree";
+    case Outcome::explained:
+      return "explained";
+    case Outcome::differ:
+      return "differ";
   }
-  Verdict verdict{.tier = thresholds.tier, .agree = false, .reasons = std::move(rules).reasons()};
-  verdict.agree = verdict.reasons.empty();
+  return "";
+}
+
+Outcome worse(Outcome first, Outcome second) { return std::max(first, second); }
+
+Verdict make_verdict(const Evidence& evidence, const Thresholds& thresholds) {
+  RuleCheck counts(thresholds);
+  counts.check_counts(evidence);
+  if (thresholds.tier == Tier::statistical) counts.check_bias(evidence.bias);
+  Verdict verdict{.tier = thresholds.tier, .reasons = std::move(counts).reasons()};
+  const bool faultless = verdict.reasons.empty();
+  std::vector<std::string> broken;
+  bool explained = false;
+  if (thresholds.tier != Tier::statistical) broken = broken_rules(evidence.metrics, thresholds);
+  if (!broken.empty() && evidence.unexplained) {
+    std::vector<std::string> unexplained = broken_rules(evidence.unexplained->metrics, thresholds);
+    explained = unexplained.empty();
+    if (!explained) broken = std::move(unexplained);
+    broken.push_back((explained ? "Without the pixels that the scene explains, every rule holds: "
+                                : "The pixels that the scene explains are left out of this: ") +
+                     evidence.unexplained->sentence);
+  }
+  // A fault is not told together with what is none.
+  if (faultless || !explained) std::ranges::move(broken, std::back_inserter(verdict.reasons));
+  verdict.outcome = verdict.reasons.empty()  ? Outcome::agree
+                    : faultless && explained ? Outcome::explained
+                                             : Outcome::differ;
   return verdict;
 }
 
-const char* name(const Verdict& verdict) { return verdict.agree ? "agree" : "differ"; }
+const char* name(const Verdict& verdict) { return name(verdict.outcome); }
 
 }  // namespace tandem::compare

@@ -112,10 +112,10 @@ Tally examine(const std::filesystem::path& path, const Options& options, const c
     const compare::Verdict& verdict = comparison.verdict;
     Tally one{.pixels = comparison.metrics.pixels,
               .differing = found.differing_pixels,
-              .alarms = verdict.agree ? 0u : 1u,
+              .alarms = verdict.outcome != compare::Outcome::differ ? 0u : 1u,
               .counts = found.divergence_counts};
     tally.add(one);
-    if (verdict.agree) continue;
+    if (verdict.outcome != compare::Outcome::differ) continue;
     for (const std::string& reason : verdict.reasons)
       fmt::print("  {} seed {}: {}\n", path.filename().string(), settings.seed, reason);
     print_mismatches(path, settings.seed, found);

@@ -50,9 +50,16 @@ bool is_same_file(const std::filesystem::path& first, const std::filesystem::pat
   return std::filesystem::weakly_canonical(first) == std::filesystem::weakly_canonical(second);
 }
 
-/// A sentence for each thing that is not as it must be, those of the verdict first. None: the exit code is 0.
+/// The worst of the verdicts.
+compare::Outcome outcome_of(const Findings& findings) {
+  const compare::Outcome today = findings.comparison.verdict.outcome;
+  return findings.baseline ? compare::worse(today, findings.baseline->outcome()) : today;
+}
+
+/// A sentence for each thing that is not as it must be, those of the verdict first.
 std::vector<std::string> failures(const Findings& findings) {
-  std::vector<std::string> sentences = findings.comparison.verdict.reasons;
+  std::vector<std::string> sentences;
+  if (findings.comparison.verdict.outcome == compare::Outcome::differ) sentences = findings.comparison.verdict.reasons;
   if (findings.baseline) {
     const auto add = [&](char side, const compare::Verdict& verdict) {
       for (const std::string& reason : verdict.reasons)
@@ -167,7 +174,7 @@ int diff(const Options& options) {
   if (findings.baseline) fmt::print("\n{}", table(*findings.baseline));
   if (!options.report.empty()) page = report_page(session, findings.comparison, json_of(findings));
   write_or_rescue(files);
-  return failures(findings).empty() ? exit_code::success : exit_code::differ;
+  return exit_code_of(outcome_of(findings));
 }
 
 }  // namespace
@@ -202,7 +209,8 @@ void add_diff_command(CLI::App& app, Action& action) {
   add_comparison_options(*command, options->comparison);
   add_tone_options(*command, options->tone);
   command->footer(
-      "Exit code: 0 the images agree, 1 they differ (from each other or from the baseline), 2 error.\n"
+      "Exit code: 0 the images agree, 1 they differ (from each other or from the baseline), 2 error, 3 they differ,\n"
+      "but --classify explains it by the scene: no device is at fault.\n"
       "Examples:\n"
       "  tandem diff scenes/cornell_box.obj --a cpu --b vulkan\n"
       "  tandem diff scenes/cornell_box.obj --a vulkan:0 --b vulkan:1 --spp 64 --json diff.json --out diff\n"

@@ -85,8 +85,7 @@ int render_gallery(const Options& options) {
   }
   write_text(folder.path() / "gallery.md", gallery_markdown(results, pictures_folder));
   write_text(folder.path() / "gallery.json", json_text(to_json(results)));
-  const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.comparison.verdict.agree; });
-  return agree ? exit_code::success : exit_code::differ;
+  return exit_code_of(outcome_of(results));
 }
 
 }  // namespace

@@ -70,10 +70,11 @@ int run_suite(const Options& options) {
   }
   const nlohmann::ordered_json totals = to_json(results);
   const auto reused = std::ranges::count_if(results, [](const SuiteResult& each) { return each.reused; });
-  fmt::print("{} comparisons: {} agree, {} differ, {} failed; {} were reused from an earlier run\n", results.size(),
-             totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
+  fmt::print("{} comparisons: {} agree, {} are explained, {} differ, {} failed; {} were reused from an earlier run\n",
+             results.size(), totals.at("agree").get<int>(), totals.at("explained").get<int>(),
+             totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
   write_or_rescue(files);
-  return totals.at("verdict") == "agree" ? exit_code::success : exit_code::differ;
+  return exit_code_of(outcome_of(results));
 }
 
 }  // namespace

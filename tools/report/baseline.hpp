@@ -55,7 +55,7 @@ struct Baseline {
   BaselineSide a, b;
   std::vector<BaselineChange> changes;  ///< but the times, which never stay the same
 
-  bool agree() const { return a.verdict.agree && b.verdict.agree; }
+  compare::Outcome outcome() const { return compare::worse(a.verdict.outcome, b.verdict.outcome); }
 };
 
 /// Compares what was rendered today with the stored run, which must be one of the same job.

@@ -43,7 +43,7 @@ std::string table(const Baseline& baseline) {
 
 nlohmann::ordered_json to_json(const Baseline& baseline) {
   nlohmann::ordered_json json = {{"folder", baseline.folder},
-                                 {"verdict", baseline.agree() ? "agree" : "differ"},
+                                 {"verdict", compare::name(baseline.outcome())},
                                  {"a", side_json(baseline.a)},
                                  {"b", side_json(baseline.b)},
                                  {"changes", nlohmann::ordered_json::array()}};

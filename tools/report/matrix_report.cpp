@@ -42,7 +42,8 @@ std::string sides_text(const MatrixReport& report, const compare::SplitVote& spl
 }  // namespace
 
 bool MatrixReport::agree() const {
-  return std::ranges::all_of(pairs, [](const MatrixPair& pair) { return pair.verdict.agree; });
+  return std::ranges::all_of(pairs,
+                             [](const MatrixPair& pair) { return pair.verdict.outcome == compare::Outcome::agree; });
 }
 
 MatrixReport compare_all(const compare::JobSummary& job, const compare::Thresholds& thresholds,
@@ -60,7 +61,7 @@ MatrixReport compare_all(const compare::JobSummary& job, const compare::Threshol
       MatrixPair pair{.a = a, .b = b, .metrics = {}, .verdict = {}};
       pair.metrics = compare::measure(report.renderings[a].image, report.renderings[b].image);
       pair.verdict = compare::make_verdict({.metrics = pair.metrics}, thresholds);
-      agree[a][b] = agree[b][a] = pair.verdict.agree;
+      agree[a][b] = agree[b][a] = pair.verdict.outcome == compare::Outcome::agree;
       report.pairs.push_back(std::move(pair));
     }
   std::vector<pathtracer::Image> images;

@@ -68,8 +68,9 @@ std::string gallery_markdown(const std::vector<GalleryResult>& results, const st
   line("| scene | a | difference | settings | bit-equal pixels | means differ by | seconds a, b | verdict |");
   line("|---|---|---|---|---|---|---|---|");
   for (const auto& [scene, comparison] : results) {
-    const std::string verdict =
-        comparison.verdict.agree ? "agree" : fmt::format("**differ**: {}", fmt::join(comparison.verdict.reasons, "; "));
+    std::string verdict = compare::name(comparison.verdict);
+    if (!comparison.verdict.reasons.empty())
+      verdict = fmt::format("**{}**: {}", verdict, fmt::join(comparison.verdict.reasons, "; "));
     line(fmt::format(
         "| {}<br>`{}` | ![{}]({}/{}.png) | ![]({}/{}_difference.png) | {} | {:.3f} %, at least {:g} % | {:.1e} | "
         "{:.2f}, {:.2f} | {} |",
@@ -87,10 +88,15 @@ std::string gallery_markdown(const std::vector<GalleryResult>& results, const st
   return text;
 }
 
+compare::Outcome outcome_of(const std::vector<GalleryResult>& results) {
+  compare::Outcome outcome = compare::Outcome::agree;
+  for (const GalleryResult& result : results) outcome = compare::worse(outcome, result.comparison.verdict.outcome);
+  return outcome;
+}
+
 nlohmann::ordered_json to_json(const std::vector<GalleryResult>& results) {
   nlohmann::ordered_json json;
-  const bool agree = std::ranges::all_of(results, [](const GalleryResult& r) { return r.comparison.verdict.agree; });
-  json["verdict"] = agree ? "agree" : "differ";
+  json["verdict"] = compare::name(outcome_of(results));
   json["format"] = json_format;
   json["scenes"] = nlohmann::ordered_json::array();
   for (const auto& [scene, comparison] : results) {

@@ -37,6 +37,9 @@ std::string gallery_markdown(const std::vector<GalleryResult>& results, const st
 /// The same for programs: what `tandem diff` says of each scene.
 nlohmann::ordered_json to_json(const std::vector<GalleryResult>& results);
 
+/// The worst of all.
+compare::Outcome outcome_of(const std::vector<GalleryResult>& results);
+
 /// The picture with neither side longer than `largest`: each pixel the mean of a square of the original, whose rest at
 /// the right and lower edge is left out.
 pathtracer::Image reduced(const pathtracer::Image& image, std::uint32_t largest);

@@ -30,7 +30,7 @@ td.cell { min-width: 20rem; max-width: 26rem; padding: .6rem 1rem .6rem 0; }
 tbody th { padding-top: .6rem; }
 .pictures { display: flex; gap: .4rem; float: left; margin: 0 .8rem .2rem 0; }
 .pictures img { width: 64px; height: 64px; object-fit: contain; background: #000; image-rendering: pixelated; }
-.agree { color: var(--good); } .differ, .failed { color: var(--bad); }
+.agree, .explained { color: var(--good); } .differ, .failed { color: var(--bad); }
 .reasons { clear: both; margin: .2rem 0 0; overflow-wrap: anywhere; }
 )";
 
@@ -46,7 +46,10 @@ std::string string(const Json& json, const char* key) { return json.at(key).get<
 /// Smaller is worse.
 std::tuple<int, double> rank(const SuiteResult& result) {
   if (result.failed()) return {0, 0.0};
-  return {result.agrees() ? 2 : 1, result.json.at("report").at("bit_equal").get<double>()};
+  return {result.agrees()                               ? 3
+          : string(result.json, "state") == "explained" ? 2
+                                                        : 1,
+          result.json.at("report").at("bit_equal").get<double>()};
 }
 
 /// "3 rounding, 1 edge or vertex tie": pixels by the class of their difference, where they were classified.
@@ -115,7 +118,7 @@ std::string suite_page(const std::string& title, const std::vector<SuiteResult>&
     rows[string(result.json, "scene")][column] = &result;
   }
   for (const auto& [scene, cells] : rows) {
-    std::tuple<int, double> worst = {3, 0.0};
+    std::tuple<int, double> worst = {4, 0.0};
     for (const auto& [column, result] : cells) worst = std::min(worst, rank(*result));
     order.emplace_back(worst, scene);
   }
@@ -129,9 +132,11 @@ std::string suite_page(const std::string& title, const std::vector<SuiteResult>&
   add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       xml_text(title), compare::page_style(), suite_style);
-  add("<p>{} comparisons: <span class=\"agree\">{} agree</span>, <span class=\"differ\">{} differ</span>, "
-      "<span class=\"failed\">{} failed</span>. The worst scenes come first; times are those of a and of b.</p>\n",
-      results.size(), totals.at("agree").get<int>(), totals.at("differ").get<int>(), totals.at("failed").get<int>());
+  add("<p>{} comparisons: <span class=\"agree\">{} agree</span>, <span class=\"explained\">{} are explained</span>, "
+      "<span class=\"differ\">{} differ</span>, <span class=\"failed\">{} failed</span>. The worst scenes come first; "
+      "times are those of a and of b.</p>\n",
+      results.size(), totals.at("agree").get<int>(), totals.at("explained").get<int>(), totals.at("differ").get<int>(),
+      totals.at("failed").get<int>());
   for (const std::string& sentence : device_sentences(results)) add("<p class=\"hint\">{}</p>\n", xml_text(sentence));
   add("<p class=\"hint\">tandem {}</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>scene</th>", TANDEM_VERSION);
   for (const auto& [a, b, settings] : columns)

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <new>
@@ -96,7 +97,7 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, compare::Comparison& compar
   const Json report = to_json(comparison);
   if (cell.report) page = report_page(session, comparison, json_text(report));
   const std::vector<std::string>& reasons = comparison.verdict.reasons;
-  SuiteResult result{.json = {{"state", reasons.empty() ? "agree" : "differ"},
+  SuiteResult result{.json = {{"state", compare::name(comparison.verdict)},
                               {"reasons", reasons},
                               {"report", report},
                               {"picture", cell_path(cell, ".png").string()},
@@ -150,17 +151,24 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
   return result;
 }
 
+compare::Outcome outcome_of(const std::vector<SuiteResult>& results) {
+  compare::Outcome outcome = compare::Outcome::agree;
+  for (const SuiteResult& result : results)
+    if (!result.agrees())
+      outcome = compare::worse(
+          outcome, result.json.at("state") == "explained" ? compare::Outcome::explained : compare::Outcome::differ);
+  return outcome;
+}
+
 nlohmann::ordered_json to_json(const std::vector<SuiteResult>& results) {
-  std::size_t agree = 0;
-  std::size_t failed = 0;
-  for (const SuiteResult& result : results) {
-    agree += result.agrees() ? 1 : 0;
-    failed += result.failed() ? 1 : 0;
-  }
-  Json json = {{"verdict", agree == results.size() ? "agree" : "differ"},
-               {"agree", agree},
-               {"differ", results.size() - agree - failed},
-               {"failed", failed},
+  const auto count = [&](const char* state) {
+    return std::ranges::count_if(results, [&](const SuiteResult& each) { return each.json.at("state") == state; });
+  };
+  Json json = {{"verdict", compare::name(outcome_of(results))},
+               {"agree", count("agree")},
+               {"explained", count("explained")},
+               {"differ", count("differ")},
+               {"failed", count("failed")},
                {"format", json_format},
                {"version", TANDEM_VERSION},
                {"cells", Json::array()}};
@@ -181,8 +189,9 @@ std::vector<JunitCase> junit_cases(const std::vector<SuiteResult>& results) {
                    .name = fmt::format("{} against {}, {}", json.at("a").get<std::string>(),
                                        json.at("b").get<std::string>(), json.at("settings").get<std::string>()),
                    .seconds = json.at("seconds"),
-                   .failures = json.at("reasons").get<std::vector<std::string>>(),
+                   .failures = {},
                    .error = {}};
+    if (json.at("state") != "explained") each.failures = json.at("reasons").get<std::vector<std::string>>();
     if (result.failed()) std::swap(each.error, each.failures.front());
     cases.push_back(std::move(each));
   }

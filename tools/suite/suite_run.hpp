@@ -15,10 +15,9 @@
 namespace tandem::tools {
 
 /// What came of a cell. `json` is its file, and all that a page or a report needs:
-/// name, scene, a, b, settings (name), state (agree, differ, failed), reasons (or why there is no verdict), seconds (of
-/// the whole cell), report (of `tandem diff`; null when it failed), picture and difference (files, relative to the
-/// folder; likewise), page (its own, where it was asked for),
-/// key (of all that the result depends on).
+/// name, scene, a, b, settings (name), state (agree, explained, differ, failed), reasons (or why there is no verdict),
+/// seconds (of the whole cell), report (of `tandem diff`; null when it failed), picture and difference (files, relative
+/// to the folder; likewise), page (its own, where it was asked for), key (of all that the result depends on).
 struct SuiteResult {
   nlohmann::ordered_json json;
   bool reused = false;  ///< from an earlier run
@@ -56,6 +55,9 @@ class SuiteRun {
 
 /// Where the cells' files are, in the folder of a suite.
 inline constexpr const char* suite_cells_folder = "cells";
+
+/// The worst of all; a cell that failed counts as one that differs.
+compare::Outcome outcome_of(const std::vector<SuiteResult>& results);
 
 /// All results without their keys, with a verdict and counts.
 nlohmann::ordered_json to_json(const std::vector<SuiteResult>& results);

@@ -8,7 +8,8 @@ function showHead(numbers, data, pixels, names) {
   byId("made").textContent = "This page is one file: it loads nothing and sends nothing.";
   const card = byId("verdict");
   card.classList.add(numbers.verdict);
-  byId("verdict-sentence").append("The images ", element("strong", {className: "word"}, numbers.verdict === "agree" ? "agree" : "differ"),
+  const words = {agree: "agree", explained: "differ for reasons that the scene owns", differ: "differ"};
+  byId("verdict-sentence").append("The images ", element("strong", {className: "word"}, words[numbers.verdict]),
     `, in tier ${numbers.tier}: ${tierSentences[numbers.tier] ?? ""} ` +
     `${percentText(numbers.bit_equal)} of the pixels have the same bits.`);
   byId("verdict-reasons").append(...numbers.reasons.map((reason) => element("li", {}, reason)));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "rhi_cpu/trace/embree/scene.hpp"
+#include "rhi_cpu/trace/embree/triangle_on_ray.hpp"
 
 /// How rays go into Embree, and what becomes of the hits that come out: what all trace functions have in common.
 namespace tandem::cpu {
@@ -121,14 +122,17 @@ inline kernel::Hit filtered_hit(const FilterContext& context, const RTCFilterFun
                            RTCHitN_Ng_z(arguments.hit, 1, 0)};
   const float direction[3] = {RTCRayN_dir_x(arguments.ray, 1, 0), RTCRayN_dir_y(arguments.ray, 1, 0),
                               RTCRayN_dir_z(arguments.ray, 1, 0)};
-  return {.t = RTCRayN_tfar(arguments.ray, 1, 0),
-          .barycentrics = {RTCHitN_u(arguments.hit, 1, 0), RTCHitN_v(arguments.hit, 1, 0)},
-          .instance_index = instance_index,
-          .geometry_index = geometry_index,
-          .primitive_index = RTCHitN_primID(arguments.hit, 1, 0),
-          .front_face = is_front_face(instance, normal, direction),
-          .opaque = is_opaque(instance, geometry_index, context.ray->flags),
-          .is_box = false};
+  kernel::Hit hit = {.t = RTCRayN_tfar(arguments.ray, 1, 0),
+                     .barycentrics = {RTCHitN_u(arguments.hit, 1, 0), RTCHitN_v(arguments.hit, 1, 0)},
+                     .instance_index = instance_index,
+                     .geometry_index = geometry_index,
+                     .primitive_index = RTCHitN_primID(arguments.hit, 1, 0),
+                     .front_face = is_front_face(instance, normal, direction),
+                     .opaque = is_opaque(instance, geometry_index, context.ray->flags),
+                     .is_box = false};
+  if (has_no_barycentrics(hit)) [[unlikely]]
+    restore_barycentrics(*context.scene, *context.ray, hit);
+  return hit;
 }
 
 }  // namespace tandem::cpu

@@ -1,5 +1,6 @@
 #include "rhi_cpu/trace/embree/candidates.hpp"
 #include "rhi_cpu/trace/embree/filter.hpp"
+#include "rhi_cpu/trace/embree/triangle_on_ray.hpp"
 #include "rhi_cpu/trace/embree/vertex_hit.hpp"
 
 namespace tandem::cpu {
@@ -52,6 +53,8 @@ bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
   hit.instance_index = instance_of(scene.triangles, query.hit.instID[0]);
   hit.geometry_index = query.hit.geomID;
   hit.primitive_index = query.hit.primID;
+  if (has_no_barycentrics(hit)) [[unlikely]]
+    restore_barycentrics(scene, ray, hit);
   float direction[3] = {ray.direction[0], ray.direction[1], ray.direction[2]};
   if (!scene.triangles.direct) {
     const auto& m = scene.instances[hit.instance_index].world_to_object;

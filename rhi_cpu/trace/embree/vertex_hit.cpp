@@ -6,27 +6,10 @@
 #include <cstddef>
 
 #include "rhi_cpu/trace/embree/candidates.hpp"
+#include "rhi_cpu/trace/embree/triangle_on_ray.hpp"
 
 namespace tandem::cpu {
 namespace {
-
-using Vector = std::array<double, 3>;
-
-Vector operator-(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-double length(const Vector& a) { return std::sqrt(dot(a, a)); }
-
-Vector transformed(const float (&m)[3][4], const float (&v)[3], float w) {
-  Vector result;
-  for (std::size_t row = 0; row < 3; ++row) {
-    result[row] = double{m[row][3]} * double{w};
-    for (std::size_t i = 0; i < 3; ++i) result[row] += double{m[row][i]} * double{v[i]};
-  }
-  return result;
-}
 
 /// Far enough to the side for the rounding errors of Embree's test, which are some units in the last place of the
 /// distance, not to matter: 256 of them. With 32, two of 10^5 rays at the vertices of long spikes slipped through
@@ -50,28 +33,13 @@ kernel::Ray beside(kernel::Ray ray, int side) {
 /// Corrects t and barycentrics of `hit` to those of the ray. False if the ray clearly passes by the triangle, or is not
 /// at one of its vertices: along edges Embree is right, and a ray that just misses an outer edge has met nothing.
 bool meets_triangle(const TopLevelScene& scene, const kernel::Ray& ray, kernel::Hit& hit) {
-  const kernel::Instance& instance = scene.instances[hit.instance_index];
-  RTCScene level = scene.traits[hit.instance_index].bottom_level->scene.get();
-  RTCGeometry geometry = rtcGetGeometry(level, hit.geometry_index);
-  const auto* triangles =
-      static_cast<const TriangleIndices*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
-  const auto* positions = static_cast<const Position*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
-
-  const Vector origin = transformed(instance.world_to_object, ray.origin, 1);
-  const Vector direction = transformed(instance.world_to_object, ray.direction, 0);
-  std::array<Vector, 3> corners;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Position& p = positions[triangles[hit.primitive_index][i]];
-    corners[i] = Vector{double{p[0]}, double{p[1]}, double{p[2]}} - origin;
-  }
-  // The moment about the edge across from each corner: the weights of the corners, but for a factor.
-  Vector moments;
+  const TriangleOnRay triangle = triangle_on_ray(scene, ray, hit);
+  const auto& [corners, direction, moments] = triangle;
   bool may_be_positive = true, may_be_negative = true;
   int edges_within_rounding = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector& a = corners[(i + 1) % 3];
     const Vector& b = corners[(i + 2) % 3];
-    moments[i] = dot(cross(a, b), direction);
     const double error = moment_error * length(b - a) * (length(a) + length(b)) * length(direction);
     may_be_positive = may_be_positive && moments[i] >= -error;
     may_be_negative = may_be_negative && moments[i] <= error;
@@ -83,11 +51,7 @@ bool meets_triangle(const TopLevelScene& scene, const kernel::Ray& ray, kernel::
   if (!(t > double{ray.t_min} && t < double{ray.t_max})) return false;
   hit.t = static_cast<float>(t);
   if (!(hit.t > ray.t_min && hit.t < ray.t_max)) return false;
-  const double sum = moments[0] + moments[1] + moments[2];
-  if (sum != 0) {
-    hit.barycentrics[0] = static_cast<float>(std::clamp(moments[1] / sum, 0.0, 1.0));
-    hit.barycentrics[1] = static_cast<float>(std::clamp(moments[2] / sum, 0.0, 1.0));
-  }
+  set_barycentrics(triangle, hit);
   return true;
 }
 

@@ -70,10 +70,13 @@ TracedRay upwards(float x, float y, RayKind kind = RayKind::closest) {
   return {.origin = {x, y, 0}, .t_max = kind == RayKind::closest ? 1e30f : 4.0f, .direction = {0, 0, 1}, .kind = kind};
 }
 
+/// Of a picture of a thousand lines that is taken from where the rays start.
+constexpr compare::PixelFootprint footprint{.eye = {0, 0, 0}, .angle = 0.001, .width = 0};
+
 compare::Arbitration arbitrated(const pathtracer::Scene& scene, const TracedRay& ray, std::uint32_t a,
                                 std::uint32_t b) {
   const Dispute dispute{.ray = ray, .answer_a = a, .answer_b = b};
-  return compare::arbitrate({&dispute, 1}, scene,
+  return compare::arbitrate({&dispute, 1}, scene, footprint,
                             [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); })[0];
 }
 
@@ -148,6 +151,72 @@ TEST_CASE("shadow rays are arbitrated by whether anything is in the way") {
   CHECK(arbitrated(scene, ray, 0, 1).ruling == Ruling::tie);
   ray.t_max = 1.001f;
   CHECK(arbitrated(scene, ray, 0, 1).ruling == Ruling::b_right);
+}
+
+/// A square with its centre in (0, 0, z), whose diagonal x = y divides it.
+pathtracer::Scene wide_plate(float half, float z) {
+  pathtracer::Scene scene;
+  scene.positions = {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
+  scene.triangles = {{.vertices = {0, 1, 2}, .material = 0}, {.vertices = {2, 3, 0}, .material = 0}};
+  return scene;
+}
+
+TEST_CASE("however large a triangle is, a ray far from its edge in the picture's terms meets it") {
+  for (const float half : {1e3f, 1e6f, 1e9f}) {
+    CAPTURE(half);
+    const pathtracer::Scene scene = wide_plate(half, 8);
+    // Beside the diagonal by less than 32 units in the last place of the corners from half = 1e6 on. A pixel is 0.008.
+    CHECK(arbitrated(scene, upwards(1, 0.5f), 0, none).ruling == Ruling::a_right);
+    CHECK(arbitrated(scene, upwards(0.5f, 1), none, 1).ruling == Ruling::b_right);
+    // Which of the two it meets is another matter: from half = 1e6 on single precision cannot tell.
+    CHECK(arbitrated(scene, upwards(1, 0.5f), 0, 1).ruling == (half < 1e6f ? Ruling::a_right : Ruling::tie));
+    TracedRay shadow = upwards(1, 0.5f, RayKind::occlusion);
+    shadow.t_max = 1e30f;
+    CHECK(arbitrated(scene, shadow, 1, 0).ruling == Ruling::a_right);
+    // At the diagonal either triangle is right, but not neither.
+    const float aside = std::min(1e-4f, half * 1e-7f);
+    CHECK(arbitrated(scene, upwards(1 + aside, 1), 0, 1).ruling == Ruling::tie);
+    CHECK(arbitrated(scene, upwards(1 + aside, 1), 0, none).ruling == Ruling::a_right);
+  }
+}
+
+TEST_CASE("a large triangle does not make what is near it uncertain") {
+  pathtracer::Scene scene = wide_plate(1e9f, -8);
+  scene.positions.insert(scene.positions.end(), {{0, 0, 5}, {2, 0, 5}, {0, 2, 5}});
+  scene.triangles.push_back({.vertices = {4, 5, 6}, .material = 0});
+  // Well inside the small triangle, and well beside it.
+  CHECK(arbitrated(scene, upwards(0.5f, 0.5f), 2, none).ruling == Ruling::a_right);
+  CHECK(arbitrated(scene, upwards(-1, 0.5f), none, 2).ruling == Ruling::a_right);
+  for (const float t_max : {7.0f, 1e30f}) {
+    CAPTURE(t_max);
+    const auto shadow = [&](float x, float y) {
+      TracedRay ray = upwards(x, y, RayKind::occlusion);
+      ray.t_max = t_max;
+      return ray;
+    };
+    CHECK(arbitrated(scene, shadow(0.5f, 0.5f), 1, 0).ruling == Ruling::a_right);
+    CHECK(arbitrated(scene, shadow(-1, 0.5f), 0, 1).ruling == Ruling::a_right);
+    CHECK(arbitrated(scene, shadow(-2e-7f, 0.5f), 0, 1).ruling == Ruling::tie);
+    CHECK(arbitrated(scene, shadow(2e-7f, 0.5f), 1, 0).ruling == Ruling::tie);
+  }
+}
+
+TEST_CASE("two large triangles that lie apart in the picture are not in one place") {
+  pathtracer::Scene scene = wide_plate(1e9f, 8);
+  const pathtracer::Scene behind = wide_plate(1e9f, 9);
+  scene.positions.insert(scene.positions.end(), behind.positions.begin(), behind.positions.end());
+  scene.triangles.push_back({.vertices = {4, 5, 6}, .material = 0});
+  scene.triangles.push_back({.vertices = {6, 7, 4}, .material = 0});
+  CHECK(arbitrated(scene, upwards(1, 0.5f), 0, 2).ruling == Ruling::a_right);
+}
+
+TEST_CASE("where a pixel is smaller than the last bits of the distance, these are allowed") {
+  // A telescope: a thousand units away, a pixel of 1e-9 radians.
+  pathtracer::Scene scene = plates({1000});
+  constexpr compare::PixelFootprint telescope{.eye = {0, 0, 0}, .angle = 1e-9, .width = 0};
+  const Dispute dispute{.ray = upwards(-1e-4f, 0.5f), .answer_a = none, .answer_b = 0};
+  const auto trace = [&](std::span<const TracedRay> rays) { return trace_exactly(scene, rays); };
+  CHECK(compare::arbitrate({&dispute, 1}, scene, telescope, trace)[0].ruling == Ruling::tie);
 }
 
 }  // namespace
