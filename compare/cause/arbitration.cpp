@@ -191,6 +191,18 @@ bool is_across_edge(const TracedRay& ray, const pathtracer::Scene& scene, std::u
   return distance_from_line(geometry_ray(ray), shared.front(), shared.back()) <= edge_error * reach;
 }
 
+/// Whether a ray was moved through the plane of what it hits then, by more than the coordinates of its own origin
+/// account for. It left that surface at a distance that is safe from rounding, and would never meet it.
+bool starts_behind(const TracedRay& ray, const Neighbour& neighbour, const pathtracer::Scene& scene,
+                   std::uint32_t triangle) {
+  const glm::dvec3 origin(ray.origin);
+  if (triangle >= scene.triangles.size() || neighbour.distance <= rounding_distance(largest_magnitude(origin)))
+    return false;
+  const Corners t = corners_of(scene, triangle);
+  const glm::dvec3 normal = glm::cross(t[1] - t[0], t[2] - t[0]);
+  return glm::dot(normal, origin - t[0]) * glm::dot(normal, glm::dvec3(neighbour.ray.origin) - t[0]) < 0;
+}
+
 /// A ray like this one that tells the first thing that is hit.
 TracedRay as_closest(TracedRay ray) {
   ray.kind = RayKind::closest;
@@ -229,10 +241,10 @@ class Search {
   void take(std::span<const std::uint32_t> answers, std::vector<TracedRay>& again) {
     for (std::size_t i = 0; i < neighbours_.size(); ++i) {
       if (answers[i] == exact_) continue;
-      if (hit_) {
-        answers_.push_back(answers[i]);
-      } else if (dispute_.ray.kind == RayKind::closest) {
+      if (dispute_.ray.kind == RayKind::closest) {
         add_if_close(neighbours_[i], answers[i], answers[i]);
+      } else if (answers[i] == 0) {
+        answers_.push_back(0);
       } else {
         asked_again_.push_back(i);
         again.push_back(as_closest(neighbours_[i].ray));
@@ -253,7 +265,8 @@ class Search {
  private:
   /// @param first what the neighbour hits
   void add_if_close(const Neighbour& neighbour, std::uint32_t first, std::uint32_t answer) {
-    const std::optional<glm::dvec3> point = point_on(neighbour.ray, scene_, first);
+    if (starts_behind(dispute_.ray, neighbour, scene_, first)) return;
+    const std::optional<glm::dvec3> point = hit_ ? std::nullopt : point_on(neighbour.ray, scene_, first);
     if (!point || neighbour.distance <= tolerance_.in_picture(neighbour.ray, *point)) answers_.push_back(answer);
   }
 

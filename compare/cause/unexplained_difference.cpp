@@ -19,15 +19,16 @@ std::string sentence_of(const Classification& classification) {
   std::vector<std::string> counts;
   for (std::size_t i = difference_class_count; i-- > 0;)
     if (classification.pixel_counts[i] > 0)
-      counts.push_back(
-          fmt::format("{} {}", classification.pixel_counts[i], name(static_cast<DifferenceClass>(i))));
+      counts.push_back(fmt::format("{} {}", classification.pixel_counts[i], name(static_cast<DifferenceClass>(i))));
   return fmt::format("{} of {} differing pixels were classed ({}).", classification.classed_pixels,
-                     classification.differing_pixels, counts.empty() ? "none" : fmt::format("{}", fmt::join(counts, ", ")));
+                     classification.differing_pixels,
+                     counts.empty() ? "none" : fmt::format("{}", fmt::join(counts, ", ")));
 }
 
 }  // namespace
 
-UnexplainedDifference leave_out_explained(const Classification& classification, const Image& image_a, const Image& image_b) {
+UnexplainedDifference leave_out_explained(const Classification& classification, const Image& image_a,
+                                          const Image& image_b) {
   const bool classed_all = classification.classed_pixels == classification.differing_pixels;
   const bool takes_rest = !classed_all && classification.mismatches() == 0 && classification.classed_pixels > 0;
   // Either begins with what stays of it.

@@ -13,6 +13,6 @@ namespace tandem::compare {
 /// evenly (pixel_selection.hpp), so of 10,000 classed ones without a mismatch at most 3 in 10,000 of the rest are one
 /// (at 95 %; the rule of three). It counts as unexplained if any was.
 UnexplainedDifference leave_out_explained(const Classification& classification, const pathtracer::Image& image_a,
-                    const pathtracer::Image& image_b);
+                                          const pathtracer::Image& image_b);
 
 }  // namespace tandem::compare

@@ -23,8 +23,10 @@ struct DeviceEdits {
   std::function<bool(SpirvModule& module, rhi::ShaderStage stage)> shader;
   std::function<void(std::vector<rhi::SpecializationValue>& values)> specialization;
 
-  std::function<void(rhi::BottomLevelDesc& desc)> bottom_level;       ///< of builds and updates
-  std::function<void(std::array<float, 3>& position)> vertex;         ///< of triangles, for builds and updates alone
+  std::function<void(rhi::BottomLevelDesc& desc)> bottom_level;  ///< of builds and updates
+  std::function<void(std::array<float, 3>& position)> vertex;    ///< of triangles, for builds and updates alone
+  /// Triangles that structures are built without; their indices must have come to the buffer by an upload.
+  std::function<bool(const std::array<std::array<float, 3>, 3>& corners)> loses_triangle;
   std::function<void(std::array<float, 6>& box)> box;                 ///< likewise
   std::function<void(rhi::InstanceDesc& instance)> instance;          ///< likewise
   std::function<void(std::uint32_t& instance_count)> instance_count;  ///< likewise

@@ -70,6 +70,7 @@ std::vector<Fault> no_faults() {
   FaultList query, pipeline(pathtracer::TracingMode::pipeline);
   query.add_harmless("none", "all that it should", plain_scene, {}, Finder::nobody);
   query.add_harmless("none-transparent", "likewise", transparent_scene, {}, Finder::nobody);
+  query.add_harmless("none-wide", "likewise", wide_scene, {}, Finder::nobody);
   query.add_harmless("none-compiled-anew", "likewise, by shaders that were taken apart and put together", plain_scene,
                      shader_edits([](SpirvModule&, rhi::ShaderStage) { return true; }), Finder::nobody);
   pipeline.add_harmless("none-spheres", "likewise, by a ray tracing pipeline", sphere_scene, {}, Finder::nobody);
@@ -86,6 +87,7 @@ std::vector<Fault> all_faults() {
   append(query_faults());
   append(pipeline_faults());
   append(shading_faults());
+  append(surface_faults());
   append(command_faults());
   return all;
 }

@@ -26,7 +26,7 @@ const char* name(Finder finder);
 struct Fault {
   std::string name;     ///< a few words with hyphens
   std::string meaning;  ///< what the device does, in a few words more
-  std::string scene;    ///< a file of scenes/, which the fault shows in
+  std::string scene;    ///< a file of scenes/ or tests/faults/scenes/, which the fault shows in
   pathtracer::TracingMode form = pathtracer::TracingMode::query;
   DeviceEdits edits;
 
@@ -69,6 +69,8 @@ inline constexpr const char* plain_scene = "cornell_box.obj";
 inline constexpr const char* glass_scene = "cornell_spheres.obj";
 inline constexpr const char* transparent_scene = "foliage.obj";
 inline constexpr const char* sphere_scene = "cornell_box_spheres.json";
+/// Small things on a ground whose coordinates are a million times as large.
+inline constexpr const char* wide_scene = "wide_ground.json";
 
 /// Edits of shaders alone.
 DeviceEdits shader_edits(ShaderEdit edit);
@@ -81,6 +83,8 @@ std::vector<Fault> query_faults();
 std::vector<Fault> pipeline_faults();
 /// Faults of its shader compiler, in the arithmetic of the path tracer.
 std::vector<Fault> shading_faults();
+/// Surfaces that it misses: by size, by distance, by region, now and then.
+std::vector<Fault> surface_faults();
 /// Faults of its buffers, builds and commands.
 std::vector<Fault> command_faults();
 /// All of them.

@@ -37,6 +37,11 @@ pathtracer::RenderSettings settings() {
   return settings;
 }
 
+std::filesystem::path scene_file(const std::string& name) {
+  const std::filesystem::path source = TANDEM_SOURCE_DIRECTORY, own = source / "tests/faults/scenes" / name;
+  return std::filesystem::exists(own) ? own : source / "scenes" / name;
+}
+
 /// Some paths, one pixel each, all over the picture.
 std::vector<pathtracer::PathStart> spread_paths() {
   constexpr std::uint32_t pixels = image_side * image_side;
@@ -216,7 +221,7 @@ FaultRunner::~FaultRunner() = default;
 FaultRunner::Reference& FaultRunner::reference(const std::string& scene, pathtracer::TracingMode form) {
   std::unique_ptr<Reference>& known = references_[{scene, form}];
   if (known) return *known;
-  pathtracer::Scene loaded = pathtracer::load_scene(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes" / scene);
+  pathtracer::Scene loaded = pathtracer::load_scene(scene_file(scene));
   pathtracer::Renderer a(device_, loaded, settings(), form);
   pathtracer::SceneOnDevice arbiter(arbiter_, loaded, settings(), form);
   a.render(samples);

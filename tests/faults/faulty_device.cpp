@@ -97,31 +97,53 @@ class FaultyCommandList final : public rhi::CommandList {
     std::ranges::copy(bytes, known.begin() + static_cast<std::ptrdiff_t>(offset));
   }
 
+  /// What was uploaded to a range of at least `size` bytes.
+  std::vector<std::byte> uploaded(const rhi::BufferRange& range, std::size_t size) {
+    const std::lock_guard lock(state_->mutex);
+    const auto found = state_->uploaded.find(range.buffer.get());
+    if (found == state_->uploaded.end() || found->second.size() < range.offset + size)
+      throw rhi::Error(rhi::ErrorCode::unsupported, range.buffer->desc().label,
+                       "what a build reads and a fault changes has to be uploaded");
+    return {found->second.begin() + static_cast<std::ptrdiff_t>(range.offset), found->second.end()};
+  }
+
+  /// A buffer like that of the range, with other bytes.
+  rhi::BufferRange buffer_of(const rhi::BufferRange& range, std::span<const std::byte> bytes) {
+    rhi::BufferDesc desc = range.buffer->desc();
+    desc.size = bytes.size();
+    const rhi::BufferHandle copy = state_->device->create_buffer(desc);
+    list_->upload(copy, 0, bytes);
+    return {copy};
+  }
+
   /// The first `count` elements of a range, `stride` bytes apart, edited in a buffer of their own.
   template <typename T>
   rhi::BufferRange edited_copy(const rhi::BufferRange& range, std::uint32_t count, std::uint32_t stride,
                                const std::function<void(T&)>& edit) {
-    std::vector<std::byte> bytes;
-    {
-      const std::lock_guard lock(state_->mutex);
-      const auto found = state_->uploaded.find(range.buffer.get());
-      const std::size_t end = range.offset + (count == 0 ? 0 : (count - 1) * std::size_t{stride} + sizeof(T));
-      if (found == state_->uploaded.end() || found->second.size() < end)
-        throw rhi::Error(rhi::ErrorCode::unsupported, range.buffer->desc().label,
-                         "what a build reads and a fault changes has to be uploaded");
-      bytes.assign(found->second.begin() + static_cast<std::ptrdiff_t>(range.offset), found->second.end());
-    }
+    std::vector<std::byte> bytes = uploaded(range, count == 0 ? 0 : (count - 1) * std::size_t{stride} + sizeof(T));
     for (std::uint32_t i = 0; i < count; ++i) {
       T value;
       std::memcpy(&value, bytes.data() + i * std::size_t{stride}, sizeof(T));
       edit(value);
       std::memcpy(bytes.data() + i * std::size_t{stride}, &value, sizeof(T));
     }
-    rhi::BufferDesc desc = range.buffer->desc();
-    desc.size = bytes.size();
-    const rhi::BufferHandle copy = state_->device->create_buffer(desc);
-    list_->upload(copy, 0, bytes);
-    return {copy};
+    return buffer_of(range, bytes);
+  }
+
+  /// Indices of a geometry in which triangles that are lost have the same corner three times.
+  rhi::BufferRange indices_without_lost(const rhi::TriangleGeometry& geometry, const std::string& label) {
+    if (geometry.index_format != rhi::IndexFormat::uint32 || geometry.vertex_format != rhi::VertexFormat::float3)
+      throw rhi::Error(rhi::ErrorCode::unsupported, label, "triangles that a fault loses have uint32 and float3");
+    using Triangle = std::array<std::uint32_t, 3>;
+    const std::vector<std::byte> vertices =
+        uploaded(geometry.vertices, std::size_t{geometry.vertex_count} * geometry.vertex_stride);
+    return edited_copy<Triangle>(geometry.indices, geometry.triangle_count, sizeof(Triangle), [&](Triangle& triangle) {
+      std::array<std::array<float, 3>, 3> corners;
+      for (std::size_t i = 0; i < 3; ++i)
+        std::memcpy(&corners[i], vertices.data() + std::size_t{triangle[i]} * geometry.vertex_stride,
+                    sizeof(corners[i]));
+      if (edits().loses_triangle(corners)) triangle[1] = triangle[2] = triangle[0];
+    });
   }
 
   rhi::BottomLevelDesc edited(rhi::BottomLevelDesc desc) {
@@ -132,6 +154,8 @@ class FaultyCommandList final : public rhi::CommandList {
         triangles->vertices = edited_copy<std::array<float, 3>>(triangles->vertices, triangles->vertex_count,
                                                                 triangles->vertex_stride, edits().vertex);
       }
+      if (auto* triangles = std::get_if<rhi::TriangleGeometry>(&geometry); triangles && edits().loses_triangle)
+        triangles->indices = indices_without_lost(*triangles, desc.label);
       if (auto* boxes = std::get_if<rhi::AabbGeometry>(&geometry); boxes != nullptr && edits().box)
         boxes->boxes = edited_copy<std::array<float, 6>>(boxes->boxes, boxes->box_count, boxes->stride, edits().box);
     }

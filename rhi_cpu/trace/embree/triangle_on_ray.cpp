@@ -33,8 +33,7 @@ TriangleOnRay triangle_on_ray(const TopLevelScene& scene, const kernel::Ray& ray
     triangle.corners[i] = Vector{double{p[0]}, double{p[1]}, double{p[2]}} - origin;
   }
   for (std::size_t i = 0; i < 3; ++i)
-    triangle.moments[i] =
-        dot(cross(triangle.corners[(i + 1) % 3], triangle.corners[(i + 2) % 3]), triangle.direction);
+    triangle.moments[i] = dot(cross(triangle.corners[(i + 1) % 3], triangle.corners[(i + 2) % 3]), triangle.direction);
   return triangle;
 }
 
