@@ -34,10 +34,10 @@ DeviceEdits losing(std::function<bool(const Corners&)> lost) {
 }
 
 DeviceEdits seeing_no_farther_than(float t) {
-  return shader_edits(edited_operand(spv::OpRayQueryInitializeKHR, t_max_operand, [t](CodeWriter& code,
-                                                                                      std::uint32_t t_max) {
-    return code.extended(GLSLstd450FMin, code.module().float_type(), {t_max, code.module().constant(t)});
-  }));
+  return shader_edits(
+      edited_operand(spv::OpRayQueryInitializeKHR, t_max_operand, [t](CodeWriter& code, std::uint32_t t_max) {
+        return code.extended(GLSLstd450FMin, code.module().float_type(), {t_max, code.module().constant(t)});
+      }));
 }
 
 /// One ray in `count`, by a hash of its direction, ends where it begins.
@@ -50,8 +50,8 @@ DeviceEdits missing_one_in(std::uint32_t count, const std::string& function) {
       changed = true;
       SpirvModule& in = code.module();
       const std::uint32_t uints = in.uint_type();
-      const std::uint32_t x = code.value(spv::OpCompositeExtract, in.float_type(),
-                                         {instruction.operands[direction_operand], 0});
+      const std::uint32_t x =
+          code.value(spv::OpCompositeExtract, in.float_type(), {instruction.operands[direction_operand], 0});
       const std::uint32_t bits = code.value(spv::OpBitcast, uints, {x});
       const std::uint32_t hash = code.value(spv::OpIMul, uints, {bits, in.constant(2654435769u)});
       const std::uint32_t misses =
@@ -81,8 +81,7 @@ std::vector<Fault> surface_faults() {
                return std::ranges::all_of(corners, [](const auto& corner) { return corner[0] > 0 && corner[0] < 10; });
              }),
              "ray", {"answer"});
-  faults.add("far-surfaces-missed", "rays end after 9 units", wide_scene, seeing_no_farther_than(9), "ray",
-             {"answer"});
+  faults.add("far-surfaces-missed", "rays end after 9 units", wide_scene, seeing_no_farther_than(9), "ray", {"answer"});
   faults.add("far-surfaces-missed-in-a-room", "rays end after 1200 units", plain_scene, seeing_no_farther_than(1200),
              "ray", {"answer"});
   faults.add("one-ray-in-100-missed", "one ray in a hundred meets nothing", wide_scene, missing_one_in(100, ""), "ray",
