@@ -8,37 +8,79 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/printable.hpp"
 #include "base/text_file.hpp"
 
 namespace tandem::json {
 
-// The library's own parser lets the last of several members of one name win.
-nlohmann::json parse(const std::filesystem::path& path) {
-  using Event = nlohmann::json::parse_event_t;
-  std::vector<std::set<std::string>> open;  // the members so far of each object that is open
-  const auto check = [&](int, Event event, const nlohmann::json& json) {
-    if (event == Event::object_start) open.emplace_back();
-    if (event == Event::object_end) open.pop_back();
-    if (event == Event::key && !open.back().insert(json.get<std::string>()).second)
-      throw Error(fmt::format("{}: an object has two members named {}", path.string(), json.get<std::string>()));
+namespace {
+
+/// Of values in values. What walks through them does so by recursion.
+constexpr std::size_t deepest_nesting = 256;
+
+/// What the library's own parser lets pass: of several members of one name it takes the last. Its callback for a parser
+/// would see them too, but goes through all elements of a list after each of them.
+class StrictReader : public nlohmann::json::json_sax_t {
+ public:
+  explicit StrictReader(const std::filesystem::path& path) : path_(path.string()) {}
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    if (!members_.back().insert(name).second)
+      throw Error(fmt::format("{}: an object has two members named {}", path_, shortened(name)));
     return true;
-  };
-  const std::string text = read_text(path);
-  try {
-    return nlohmann::json::parse(text, check);
-  } catch (const nlohmann::json::exception& error) {
-    // Without the library's own mark, "[json.exception...] ".
-    const std::string sentence = error.what();
-    const std::size_t mark = sentence.find("] ");
-    throw Error(fmt::format("{}: {}", path.string(), mark == std::string::npos ? sentence : sentence.substr(mark + 2)));
   }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) override {
+    throw Error(fmt::format("{}: {}", path_, library_sentence(error)));
+  }
+
+ private:
+  bool open() {
+    members_.emplace_back();
+    if (members_.size() > deepest_nesting)
+      throw Error(fmt::format("{}: values are nested deeper than {} times", path_, deepest_nesting));
+    return true;
+  }
+  bool close() {
+    members_.pop_back();
+    return true;
+  }
+
+  std::string path_;
+  std::vector<std::set<std::string>> members_;  ///< so far, of each value that is open; those of a list stay empty
+};
+
+}  // namespace
+
+std::string library_sentence(const std::exception& error) {
+  const std::string_view sentence = error.what();
+  const std::size_t mark = sentence.starts_with("[json.exception.") ? sentence.find("] ") : std::string_view::npos;
+  return shortened(mark == std::string_view::npos ? sentence : sentence.substr(mark + 2), 200);
+}
+
+nlohmann::json parse(const std::filesystem::path& path) {
+  const std::string text = read_text(path);
+  StrictReader reader(path);
+  nlohmann::json::sax_parse(text, &reader);  // throws where it ends early
+  return nlohmann::json::parse(text);
 }
 
 std::string Range::sentence() const {
-  if (above_minimum && minimum == 0 && maximum >= practically_unlimited) return "must be a positive number";
+  if (minimum <= -unlimited && maximum >= unlimited) return "must be a finite number";
+  // A number that is too small for a normal float counts as 0.
+  constexpr double smallest = 1.18e-38;
+  if (above_minimum && minimum == 0) return fmt::format("must be a number from {:g} to {:g}", smallest, maximum);
   if (above_minimum) return fmt::format("must be a number above {:g}, at most {:g}", minimum, maximum);
-  if (minimum == 0 && maximum >= practically_unlimited) return "must be a number that is at least 0";
-  if (maximum >= practically_unlimited) return "must be a finite number";
   return fmt::format("must be a number from {:g} to {:g}", minimum, maximum);
 }
 
@@ -125,7 +167,7 @@ std::vector<std::pair<std::string, Value>> Value::members() const {
   if (!json_->is_object()) fail("must be an object");
   std::vector<std::pair<std::string, Value>> result;
   for (const auto& [key, json] : json_->items())
-    result.emplace_back(key, Value(json, file_, path_.empty() ? key : path_ + "." + key));
+    result.emplace_back(key, Value(json, file_, path_.empty() ? shortened(key) : path_ + "." + shortened(key)));
   return result;
 }
 

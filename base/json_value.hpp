@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <limits>
 #include <optional>
@@ -16,14 +17,19 @@
 
 #include "base/error.hpp"
 #include "base/named.hpp"
+#include "base/printable.hpp"
 
 namespace tandem::json {
 
-/// A limit from here on is none that a sentence would mention.
-inline constexpr double practically_unlimited = 1e9;
+/// A limit from here on is none but that of floating point.
+inline constexpr double unlimited = 1e300;
 
-/// Reads a JSON file. Throws Error, naming the file, also for objects with two members of one name.
+/// Reads a JSON file. Throws Error, naming the file, also for objects with two members of one name and for values that
+/// are nested deeper than any file that is meant for us.
 nlohmann::json parse(const std::filesystem::path& path);
+
+/// What an exception of the JSON library says, without its own mark "[json.exception...]", and not at any length.
+std::string library_sentence(const std::exception& error);
 
 /// What a number must be.
 struct Range {
@@ -73,7 +79,7 @@ class Value {
       if (given == named.name) return named.value;
       known += (known.empty() ? "" : ", ") + std::string(named.name);
     }
-    fail(fmt::format("is '{}', which is none of: {}", given, known));
+    fail(fmt::format("is '{}', which is none of: {}", shortened(given), known));
   }
 
   std::vector<Value> elements() const;                         ///< of an array

@@ -57,7 +57,7 @@ void check_output_files(std::span<const OutputFile> files) {
   std::set<std::filesystem::path> paths;
   for (const OutputFile& file : files) {
     check_output_path(file.path);
-    if (!paths.insert(std::filesystem::weakly_canonical(file.path)).second) {
+    if (!paths.insert(std::filesystem::weakly_canonical(link_target(file.path))).second) {
       throw Error(fmt::format("two results would be written into '{}'", file.path.string()));
     }
   }

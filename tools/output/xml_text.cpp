@@ -6,24 +6,18 @@
 #include <cstddef>
 #include <iterator>
 
+#include "base/utf8.hpp"
+
 namespace tandem::tools {
 namespace {
 
 /// Bytes of the character that `text` begins with, or 0 when it is no UTF-8 or XML 1.0 does not allow it (section 2.2).
 std::size_t character_length(std::string_view text) {
-  const auto byte = [&](std::size_t index) { return static_cast<unsigned char>(text[index]); };
-  if (byte(0) < 0x80) return byte(0) >= 0x20 || text[0] == '\t' || text[0] == '\n' || text[0] == '\r' ? 1 : 0;
-  const std::size_t length = byte(0) < 0xc2 ? 0 : byte(0) < 0xe0 ? 2 : byte(0) < 0xf0 ? 3 : byte(0) < 0xf5 ? 4 : 0;
-  if (length == 0 || length > text.size()) return 0;
-  char32_t code = byte(0) & (0xffU >> (length + 1));
-  for (std::size_t index = 1; index < length; ++index) {
-    if ((byte(index) & 0xc0U) != 0x80) return 0;
-    code = code << 6 | (byte(index) & 0x3fU);
-  }
-  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-  const bool allowed = code >= least[length] && !(code >= 0xd800 && code < 0xe000) && code != 0xfffe &&
-                       code != 0xffff && code <= 0x10ffff;
-  return allowed ? length : 0;
+  const Utf8Character character = first_character(text);
+  if (character.code == 0xfffe || character.code == 0xffff) return 0;
+  return character.code >= 0x20 || character.code == '\t' || character.code == '\n' || character.code == '\r'
+             ? character.length
+             : 0;
 }
 
 }  // namespace

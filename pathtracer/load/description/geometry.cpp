@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <string_view>
 #include <utility>
 
 #include <fmt/ranges.h>
@@ -23,20 +24,25 @@ glm::dmat4 transform_of(const Object& object) {
   return transform ? read_transform(*transform) : glm::dmat4(1.0);
 }
 
+/// "it has: a, b and 7 more"
+std::string known(const std::multimap<std::string_view, std::size_t>& named) {
+  constexpr std::size_t shown = 10;
+  std::vector<std::string> names;
+  for (const auto& [name, index] : named)
+    if (names.size() < shown) names.push_back(shortened(name));
+  const std::string more = named.size() > shown ? fmt::format(" and {} more", named.size() - shown) : std::string();
+  return fmt::format("it has: {}{}", fmt::join(names, ", "), more);
+}
+
 /// What the model does without in the description's favour: materials of its own that have been given another.
 void override_materials(const Value& overrides, const NamedIndices& materials, std::size_t first, Scene& scene) {
+  std::multimap<std::string_view, std::size_t> named;
+  for (std::size_t i = first; i < scene.materials.size(); ++i) named.emplace(scene.material_names[i], i);
   for (const auto& [name, value] : overrides.members()) {
     const std::uint32_t replacement = materials.find(value);
-    bool found = false;
-    for (std::size_t i = first; i < scene.materials.size(); ++i) {
-      if (scene.material_names[i] != name) continue;
-      scene.materials[i] = scene.materials[replacement];
-      found = true;
-    }
-    if (!found)
-      value.fail(fmt::format("stands for a material that the model does not have; it has: {}",
-                             fmt::join(scene.material_names.begin() + static_cast<std::ptrdiff_t>(first),
-                                       scene.material_names.end(), ", ")));
+    const auto [begin, end] = named.equal_range(name);
+    if (begin == end) value.fail(fmt::format("stands for a material that the model does not have; {}", known(named)));
+    for (auto entry = begin; entry != end; ++entry) scene.materials[entry->second] = scene.materials[replacement];
   }
 }
 

@@ -159,7 +159,8 @@ GpuMaterial read_material(const Value& value, Textures& textures, const NamedInd
 
 std::uint32_t NamedIndices::find(const Value& name) const {
   const auto found = indices_.find(name.text());
-  if (found == indices_.end()) name.fail(fmt::format("names '{}', which is not among the {}", name.text(), kind_));
+  if (found == indices_.end())
+    name.fail(fmt::format("names '{}', which is not among the {}", shortened(name.text()), kind_));
   return found->second;
 }
 

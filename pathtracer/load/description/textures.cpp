@@ -116,7 +116,8 @@ std::uint32_t Textures::image(const Value& file, TextureEncoding encoding) {
 
 std::uint32_t Textures::use(const Value& name, TextureUse use) {
   const auto found = definitions_.find(name.text());
-  if (found == definitions_.end()) name.fail(fmt::format("names '{}', which is not among the textures", name.text()));
+  if (found == definitions_.end())
+    name.fail(fmt::format("names '{}', which is not among the textures", shortened(name.text())));
   const Definition& definition = found->second;
   const TextureEncoding encoding =
       definition.encoding.value_or(use == TextureUse::color ? TextureEncoding::color : TextureEncoding::data);
