@@ -41,6 +41,7 @@ AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)), tar
   const std::uint32_t unique = std::random_device{}();
   const std::filesystem::path temporary =
       folder / fmt::format(".{}.{:08x}{}", target_.stem().string(), unique, target_.extension().string());
+  unfinished_ = UnfinishedPath(temporary);
   if (!std::ofstream(temporary, std::ios::binary))
     throw Error(fmt::format("cannot write '{}': {}", path_.string(), std::strerror(errno)));
   temporary_path_ = temporary;
@@ -64,6 +65,7 @@ void AtomicFile::commit() {
   std::filesystem::rename(temporary_path_, target_, error);
   if (error) throw Error(fmt::format("cannot write '{}': {}", path_.string(), error.message()));
   committed_ = true;
+  unfinished_ = {};
 }
 
 }  // namespace tandem

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <span>
 
+#include "base/unfinished_path.hpp"
+
 namespace tandem {
 
 /// The file that is written when `path` is: where its symbolic links lead, whether or not there is a file; a path that
@@ -35,6 +37,7 @@ class AtomicFile {
   std::filesystem::path path_;    ///< as it is called
   std::filesystem::path target_;  ///< where its links lead
   std::filesystem::path temporary_path_;
+  UnfinishedPath unfinished_;
   bool committed_ = false;
 };
 

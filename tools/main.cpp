@@ -2,13 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <new>
 #include <string>
 
 #include "base/progress.hpp"
 #include "tools/command.hpp"
 #include "tools/output/interruption.hpp"
+#include "tools/output/print.hpp"
 
 namespace {
 
@@ -17,7 +17,7 @@ using namespace tandem::tools;
 /// One line on standard error, whatever line breaks the sentence came with.
 int fail(std::string sentence, int code = exit_code::error) {
   std::replace(sentence.begin(), sentence.end(), '\n', ' ');
-  fmt::print(stderr, "tandem: {}\n", sentence);
+  print_error_line(sentence);
   return code;
 }
 
@@ -64,10 +64,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  reserve_standard_files();
   try {
     const int code = run(argc, argv);
-    if (std::fflush(stdout) != 0) return fail("standard output cannot be written");
-    return code;
+    return finish_output() ? code : fail("standard output cannot be written");
   } catch (const tandem::Cancelled& interruption) {
     return fail(interruption.what(), exit_code::interrupted);
   } catch (const std::bad_alloc&) {

@@ -56,8 +56,8 @@ TEST_CASE("A link that leads to no file is refused by its own name") {
     std::filesystem::create_symlink(target, folder.path() / name);
     return folder.path() / name;
   };
-  for (const std::filesystem::path& path : {link("circle", "circle"), link("folder", "."), link("device", "/dev/null"),
-                                            link("nowhere", "missing/file")}) {
+  for (const std::filesystem::path& path :
+       {link("circle", "circle"), link("folder", "."), link("device", "/dev/null"), link("nowhere", "missing/file")}) {
     CHECK_THROWS_WITH_AS(AtomicFile{path}, doctest::Contains(path.c_str()), Error);
     CHECK(std::filesystem::is_symlink(path));
   }

@@ -25,7 +25,8 @@ std::string error_of(std::string_view text) {
 }  // namespace
 
 TEST_CASE("What is no JSON is a sentence of the place, without the library's marks") {
-  for (const char* text : {"{", "{\"known\": 1e999}", "[1, 2", "nul", "{\"a\": \"\x01\"}", "{\"a\": \"\xff\"}", "1 2"}) {
+  for (const char* text :
+       {"{", "{\"known\": 1e999}", "[1, 2", "nul", "{\"a\": \"\x01\"}", "{\"a\": \"\xff\"}", "1 2"}) {
     CAPTURE(text);
     const std::string sentence = error_of(text);
     CHECK(sentence.starts_with("x.json: "));

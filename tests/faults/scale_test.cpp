@@ -35,19 +35,19 @@ struct Place {
 std::string model(const Place& place) {
   std::string text = "mtllib model.mtl\n";
   for (const std::array<double, 3>& p : std::vector<std::array<double, 3>>{{-3, -1, -3},
-                                                                            {3, -1, -3},
-                                                                            {3, -1, 3},
-                                                                            {-3, -1, 3},
-                                                                            {1, 0, 0},
-                                                                            {-1, 0, 0},
-                                                                            {0, 1, 0},
-                                                                            {0, -1, 0},
-                                                                            {0, 0, 1},
-                                                                            {0, 0, -1},
-                                                                            {-1, 3, -1},
-                                                                            {1, 3, -1},
-                                                                            {1, 3, 1},
-                                                                            {-1, 3, 1}})
+                                                                           {3, -1, -3},
+                                                                           {3, -1, 3},
+                                                                           {-3, -1, 3},
+                                                                           {1, 0, 0},
+                                                                           {-1, 0, 0},
+                                                                           {0, 1, 0},
+                                                                           {0, -1, 0},
+                                                                           {0, 0, 1},
+                                                                           {0, 0, -1},
+                                                                           {-1, 3, -1},
+                                                                           {1, 3, -1},
+                                                                           {1, 3, 1},
+                                                                           {-1, 3, 1}})
     fmt::format_to(std::back_inserter(text), "v {:.9g} {:.9g} {:.9g}\n", place.scale * p[0] + place.origin,
                    place.scale * p[1], place.scale * p[2] - 0.7 * place.origin);
   return text +
@@ -94,8 +94,7 @@ class Places {
       CHECK(bad.verdict.outcome == compare::Outcome::differ);
       // All of what differs but the borders of shadows and lost triangles: a tenth of a pixel at either side of an edge
       // is a tie, and a shape of ten pixels has many borders.
-      const auto wrong =
-          bad.classification->pixel_counts[static_cast<std::size_t>(compare::DifferenceClass::mismatch)];
+      const auto wrong = bad.classification->pixel_counts[static_cast<std::size_t>(compare::DifferenceClass::mismatch)];
       CHECK(5 * wrong >= 4 * bad.classification->classed_pixels);
     }
   }

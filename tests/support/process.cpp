@@ -135,4 +135,11 @@ Outcome run_tandem(const std::vector<std::string>& arguments, const ProcessOptio
   return run_program(TANDEM_BINARY, arguments, options);
 }
 
+Outcome run_in_shell(const std::string& line, ProcessOptions options) {
+  const char* const path = std::getenv("PATH");
+  options.environment.push_back("PATH=" + std::filesystem::path(TANDEM_BINARY).parent_path().string() + ":" +
+                                (path != nullptr ? path : ""));
+  return run_program("/bin/sh", {"-c", line}, options);
+}
+
 }  // namespace tandem::test

@@ -40,4 +40,7 @@ Outcome run_tandem(const std::convertible_to<std::string_view> auto& line, const
   return run_tandem(words(line), options);
 }
 
+/// Runs a line of a shell, in which `tandem` is the program under test.
+Outcome run_in_shell(const std::string& line, ProcessOptions options = {});
+
 }  // namespace tandem::test

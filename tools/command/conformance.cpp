@@ -17,6 +17,7 @@
 #include "tools/output/interruption.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/report/device_json.hpp"
 
 namespace tandem::tools {
@@ -89,7 +90,7 @@ bool is_named(const rhi::DeviceInfo& device, const std::string& name) {
 int run_kit(const Options& options) {
   const std::vector<conformance::Case> cases = chosen_cases(options.filter);
   if (options.list) {
-    for (const conformance::Case& test : cases) fmt::print("{}\n    {}\n", test.name, test.behaviour);
+    for (const conformance::Case& test : cases) print("{}\n    {}\n", test.name, test.behaviour);
     return exit_code::success;
   }
   for (const std::filesystem::path& path : {options.json, options.markdown})
@@ -101,14 +102,14 @@ int run_kit(const Options& options) {
   std::vector<conformance::DeviceReport> reports;
   for (const std::string& name : names) {
     reports.push_back(run_on(name, cases, options));
-    fmt::print("{}\n", conformance::text(reports.back()));
+    print("{}\n", conformance::text(reports.back()));
   }
   bool good = std::all_of(reports.begin(), reports.end(), conformance::succeeded);
   for (const std::string& required : options.required) {
     if (std::any_of(reports.begin(), reports.end(),
                     [&](const conformance::DeviceReport& report) { return is_named(report.device, required); }))
       continue;
-    fmt::print("the required device '{}' is absent\n", required);
+    print("the required device '{}' is absent\n", required);
     good = false;
   }
   if (!options.json.empty()) write_text(options.json, json_text(conformance::to_json(reports)));

@@ -6,6 +6,7 @@
 #include "devices/devices.hpp"
 #include "tools/command.hpp"
 #include "tools/output/messages.hpp"
+#include "tools/output/print.hpp"
 #include "tools/report/device_json.hpp"
 
 namespace tandem::tools {
@@ -36,14 +37,14 @@ int list_devices(bool as_json) {
   if (as_json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const rhi::DeviceInfo& device : devices) json.push_back(to_json_in_full(device));
-    fmt::print("{}", json_text(json));
+    print("{}", json_text(json));
     return exit_code::success;
   }
   for (const rhi::DeviceInfo& device : devices) {
-    fmt::print("{}\n", device.name);
-    fmt::print("  hardware      {} ({})\n", device.description, kind_name(device.kind));
-    fmt::print("  driver        {}{}{}\n", device.driver, device.api.empty() ? "" : ", ", device.api);
-    fmt::print("  capabilities  {}\n", capability_names(device.capabilities));
+    print("{}\n", device.name);
+    print("  hardware      {} ({})\n", device.description, kind_name(device.kind));
+    print("  driver        {}{}{}\n", device.driver, device.api.empty() ? "" : ", ", device.api);
+    print("  capabilities  {}\n", capability_names(device.capabilities));
   }
   return exit_code::success;
 }

@@ -19,6 +19,7 @@
 #include "tools/output/junit.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/baseline.hpp"
 #include "tools/report/baseline_report.hpp"
@@ -170,8 +171,8 @@ int diff(const Options& options) {
   findings.comparison = compare_devices(session, progress_bars());
   if (baseline) findings.baseline = compare_with(*baseline, findings.comparison);
   print_warnings(findings.comparison.a.warnings);
-  fmt::print("{}", table(findings.comparison));
-  if (findings.baseline) fmt::print("\n{}", table(*findings.baseline));
+  print("{}", table(findings.comparison));
+  if (findings.baseline) print("\n{}", table(*findings.baseline));
   if (!options.report.empty()) page = report_page(session, findings.comparison, json_of(findings));
   write_or_rescue(files);
   return exit_code_of(outcome_of(findings));

@@ -12,6 +12,7 @@
 #include "tools/options/render_options.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/explanation_report.hpp"
 
@@ -51,7 +52,7 @@ int run(const Options& options) {
                                          .arbiter = open_device(options.arbiter, options.render)};
   const compare::Explanation explanation = explain(devices, job, explanation_options);
   print_warnings(explanation.warnings);
-  fmt::print("{}", table(explanation, {.all_events = options.all_events, .colors = isatty(STDOUT_FILENO) != 0}));
+  print("{}", table(explanation, {.all_events = options.all_events, .colors = isatty(STDOUT_FILENO) != 0}));
   if (!options.json.empty()) write_text(options.json, json_text(to_json(explanation)));
   return explanation.mismatches() == 0 ? exit_code::success : exit_code::differ;
 }

@@ -15,6 +15,7 @@
 #include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/suite/gallery.hpp"
@@ -77,9 +78,9 @@ int render_gallery(const Options& options) {
     write(scene.name + ".png", comparison.a.image);
     write(scene.name + "_difference.png", compare::heat_map(comparison.a.image, comparison.b.image));
     comparison.a.image = comparison.b.image = {};
-    fmt::print("{:<34}{:9.4f} % bit-equal  {}\n", scene.name, 100 * comparison.metrics.bit_equal,
-               compare::name(comparison.verdict));
-    for (const std::string& reason : comparison.verdict.reasons) fmt::print("{:<34}{}\n", "", reason);
+    print("{:<34}{:9.4f} % bit-equal  {}\n", scene.name, 100 * comparison.metrics.bit_equal,
+          compare::name(comparison.verdict));
+    for (const std::string& reason : comparison.verdict.reasons) print("{:<34}{}\n", "", reason);
     std::fflush(stdout);
     results.push_back(std::move(result));
   }

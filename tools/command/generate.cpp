@@ -9,6 +9,7 @@
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 
 namespace tandem::tools {
@@ -29,7 +30,7 @@ int generate(const Options& options) {
     });
   }
   if (triangles == 0) throw Cancelled();
-  fmt::print("{}: {} triangles\n", options.output.string(), triangles);
+  print("{}: {} triangles\n", options.output.string(), triangles);
   return exit_code::success;
 }
 

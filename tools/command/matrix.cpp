@@ -12,6 +12,7 @@
 #include "tools/options/threshold_options.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/matrix_report.hpp"
@@ -49,7 +50,7 @@ int compare_matrix(const Options& options) {
     renderings.push_back(compare::render(*renderers[index], job.samples, progress_bars()));
   print_warnings(renderings.front().warnings);
   const MatrixReport report = compare_all(summary(job), thresholds, std::move(renderings));
-  fmt::print("{}", table(report));
+  print("{}", table(report));
   if (!options.json.empty()) {
     const OutputFile file{options.json,
                           [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }};

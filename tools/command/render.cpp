@@ -14,6 +14,7 @@
 #include "tools/options/render_options.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/speed.hpp"
 
@@ -43,10 +44,10 @@ int render_image(const Options& options) {
                           pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone, layers);
                         }};
   write_or_rescue({&file, 1});
-  fmt::print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(),
-             job.settings.width, job.settings.height, job.samples, rendering.device.name, rendering.device.description,
-             pathtracer::name(rendering.trace), rendering.milliseconds,
-             per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
+  print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(), job.settings.width,
+        job.settings.height, job.samples, rendering.device.name, rendering.device.description,
+        pathtracer::name(rendering.trace), rendering.milliseconds,
+        per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
   return exit_code::success;
 }
 

@@ -14,6 +14,7 @@
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/study_report.hpp"
@@ -48,7 +49,7 @@ int study_sampling(const Options& options) {
     if (!result) throw Cancelled();
     report.scenes.push_back(std::move(*result));
   }
-  fmt::print("{}", markdown(report));
+  print("{}", markdown(report));
   std::vector<OutputFile> files;
   if (!options.json.empty())
     files.push_back(

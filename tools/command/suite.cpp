@@ -13,6 +13,7 @@
 #include "tools/output/interruption.hpp"
 #include "tools/output/junit.hpp"
 #include "tools/output/output_file.hpp"
+#include "tools/output/print.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/suite/suite.hpp"
 #include "tools/suite/suite_page.hpp"
@@ -35,9 +36,9 @@ void print_line(const SuiteResult& result) {
   const std::string share =
       result.failed() ? std::string()
                       : fmt::format("{:.4f} % bit-equal  ", 100 * json.at("report").at("bit_equal").get<double>());
-  fmt::print("{:<52}{}{}{}\n", json.at("name").get<std::string>(), share, json.at("state").get<std::string>(),
-             result.reused ? " (reused)" : "");
-  for (const std::string reason : json.at("reasons")) fmt::print("{:<52}{}\n", "", reason);
+  print("{:<52}{}{}{}\n", json.at("name").get<std::string>(), share, json.at("state").get<std::string>(),
+        result.reused ? " (reused)" : "");
+  for (const std::string reason : json.at("reasons")) print("{:<52}{}\n", "", reason);
   std::fflush(stdout);
 }
 
@@ -70,9 +71,9 @@ int run_suite(const Options& options) {
   }
   const nlohmann::ordered_json totals = to_json(results);
   const auto reused = std::ranges::count_if(results, [](const SuiteResult& each) { return each.reused; });
-  fmt::print("{} comparisons: {} agree, {} are explained, {} differ, {} failed; {} were reused from an earlier run\n",
-             results.size(), totals.at("agree").get<int>(), totals.at("explained").get<int>(),
-             totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
+  print("{} comparisons: {} agree, {} are explained, {} differ, {} failed; {} were reused from an earlier run\n",
+        results.size(), totals.at("agree").get<int>(), totals.at("explained").get<int>(),
+        totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
   write_or_rescue(files);
   return exit_code_of(outcome_of(results));
 }

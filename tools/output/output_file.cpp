@@ -9,6 +9,7 @@
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "tools/output/interruption.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -32,6 +33,7 @@ OutputFolder::OutputFolder(std::filesystem::path path) : path_(std::move(path)) 
   for (std::filesystem::path missing = path_; !missing.empty() && !std::filesystem::exists(missing, error);
        missing = missing.parent_path()) {
     made_.push_back(missing);
+    unfinished_.emplace_back(missing);
   }
   error.clear();
   std::filesystem::create_directories(path_, error);
@@ -64,6 +66,7 @@ void check_output_files(std::span<const OutputFile> files) {
 }
 
 void write_or_rescue(std::span<const OutputFile> files) {
+  const Saving saving;
   std::filesystem::path rescue;
   std::error_code not_empty;
   std::string first_reason;

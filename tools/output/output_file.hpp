@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/unfinished_path.hpp"
+
 /// Files that hold what took long to compute.
 namespace tandem::tools {
 
@@ -27,6 +29,7 @@ class OutputFolder {
  private:
   std::filesystem::path path_;
   std::vector<std::filesystem::path> made_;  ///< innermost first
+  std::vector<UnfinishedPath> unfinished_;   ///< the same
 };
 
 /// Writes the text under a temporary name, then renames. Throws Error.

@@ -11,11 +11,20 @@
 #include "tools/output/interruption.hpp"
 
 namespace tandem::tools {
+namespace {
+
+/// A bar that cannot be drawn is no error.
+void draw(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
 
 ProgressBar::ProgressBar(std::string label) : label_(std::move(label)), terminal_(isatty(STDERR_FILENO) != 0) {}
 
 ProgressBar::~ProgressBar() {
-  if (drawn_) fmt::print(stderr, "\r\033[K");
+  if (drawn_) draw("\r\033[K");
 }
 
 void ProgressBar::show(double fraction) {
@@ -27,9 +36,8 @@ void ProgressBar::show(double fraction) {
   const int filled = static_cast<int>(done * cells);
   const double elapsed = std::chrono::duration<double>(now - started_).count();
   const std::string left = done > 0.0 ? fmt::format("{:.0f} s left", elapsed / done - elapsed) : std::string();
-  fmt::print(stderr, "\r{} [{:#<{}}{:.<{}}] {:3.0f} % {}\033[K", label_, "", filled, "", cells - filled, 100.0 * done,
-             left);
-  std::fflush(stderr);
+  draw(fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f} % {}\033[K", label_, "", filled, "", cells - filled, 100.0 * done,
+                   left));
   drawn_ = true;
   last_drawn_ = now;
 }
