@@ -23,17 +23,20 @@ ComparedDevices with_programs(rhi::DeviceHandle a, rhi::DeviceHandle b, rhi::Dev
   return devices;
 }
 
-Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options) {
+Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options, const StageProgress& progress) {
   if (options.classify && !devices.arbiter) throw std::invalid_argument("prepare: classify takes an arbiter");
   if (options.classify && options.thresholds.tier == Tier::statistical)
     throw std::invalid_argument("prepare: tier statistical has no paths to classify");
   pathtracer::Renderer a(devices.a, job.scene, job.settings, options.trace_a, devices.programs_a);
   pathtracer::Renderer b(devices.b, job.scene, job.settings, options.trace_b, devices.programs_b);
+  // Both programs before either is run: making them is when a device refuses one.
   a.prepare();
   b.prepare();
   std::optional<pathtracer::SceneOnDevice> arbiter;
   if (options.classify)
     arbiter.emplace(devices.arbiter, job.scene, job.settings, std::nullopt, devices.programs_arbiter);
+  compile(a, progress);
+  compile(b, progress);
   JobSummary job_summary = summary(job);
   return {.options = options,
           .summary = std::move(job_summary),
@@ -89,7 +92,7 @@ Comparison compare_devices(Session& session, const StageProgress& progress) {
 
 Comparison compare_devices(ComparedDevices devices, Job job, const ComparisonOptions& options,
                            const StageProgress& progress) {
-  Session session = prepare(std::move(devices), std::move(job), options);
+  Session session = prepare(std::move(devices), std::move(job), options, progress);
   return compare_devices(session, progress);
 }
 

@@ -2,9 +2,17 @@
 
 namespace tandem::compare {
 
+void compile(pathtracer::Renderer& renderer, const StageProgress& progress) {
+  const std::string stage = "compiling shaders for " + renderer.scene().device().info().name;
+  if (progress && !progress(stage, 0)) throw Cancelled();
+  renderer.warm_up();
+  if (progress && !progress(stage, 1)) throw Cancelled();
+}
+
 Rendering render(pathtracer::Renderer& renderer, std::uint32_t samples, const StageProgress& progress) {
   const pathtracer::SceneOnDevice& scene = renderer.scene();
   const rhi::DeviceInfo& device = scene.device().info();
+  compile(renderer, progress);
   if (!renderer.render(samples, stage_of(progress, device.name))) throw Cancelled();
   return {.image = renderer.image(),
           .device = device,
@@ -13,6 +21,7 @@ Rendering render(pathtracer::Renderer& renderer, std::uint32_t samples, const St
           .background = scene.background(),
           .milliseconds = renderer.device_milliseconds(),
           .build_milliseconds = scene.build_milliseconds(),
+          .compile_milliseconds = renderer.compile_milliseconds(),
           .rays = renderer.ray_count(),
           .metadata = renderer.metadata(),
           .warnings = scene.warnings()};

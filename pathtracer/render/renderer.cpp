@@ -14,6 +14,12 @@
 namespace tandem::pathtracer {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
 std::string text_of(const glm::vec3& v) { return fmt::format("{} {} {}", v.x, v.y, v.z); }
 
 }  // namespace
@@ -26,12 +32,24 @@ Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSet
 
 void Renderer::prepare() {
   if (picture_group_) return;
+  const Clock::time_point start = Clock::now();
   picture_group_ =
       scene_.device().create_bind_group({.pipeline = scene_.program(PathTraceTask::picture).pipeline(),
                                          .set = 1,
                                          .entries = {{.binding = 0, .resource = rhi::BufferRange{radiance_sum_}},
                                                      {.binding = 1, .resource = rhi::BufferRange{ray_counts_}}},
                                          .label = "picture"});
+  compile_milliseconds_ += milliseconds_since(start);
+}
+
+void Renderer::warm_up() {
+  prepare();
+  if (is_warm_) return;
+  const Clock::time_point start = Clock::now();
+  // No sample is added to the sum of the first pixel.
+  scene_.execute("warm up", [&](rhi::CommandList& list) { record(list, {.sample_count = 0}); });
+  compile_milliseconds_ += milliseconds_since(start);
+  is_warm_ = true;
 }
 
 void Renderer::restart(const RenderSettings& settings) {
@@ -44,6 +62,8 @@ void Renderer::restart(const RenderSettings& settings) {
         {.size = pixels * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = "ray counts"});
   }
   picture_group_ = nullptr;  // the settings may ask for another program
+  is_warm_ = false;
+  compile_milliseconds_ = 0;
   pace_ = Pace(settings.submission_seconds);
   clear_picture();
 }
@@ -72,22 +92,23 @@ void Renderer::collect_ray_counts() {
   scene_.device().submit(list)->wait();
 }
 
+void Renderer::record(rhi::CommandList& list, const DispatchConstants& constants) {
+  scene_.program(PathTraceTask::picture)
+      .record(list, {scene_.bind_group(PathTraceTask::picture), picture_group_}, constants);
+}
+
 void Renderer::dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count) {
   const DispatchConstants constants{
       .tile_offset = tile.offset, .tile_size = tile.size, .first_sample = first_sample, .sample_count = sample_count};
-  const auto start = std::chrono::steady_clock::now();
-  device_milliseconds_ += scene_.execute("path tracing", [&](rhi::CommandList& list) {
-    scene_.program(PathTraceTask::picture)
-        .record(list, {scene_.bind_group(PathTraceTask::picture), picture_group_}, constants);
-  });
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  pace_.measured(double(tile.size.x) * double(tile.size.y) * sample_count, elapsed.count());
+  const Clock::time_point start = Clock::now();
+  device_milliseconds_ += scene_.execute("path tracing", [&](rhi::CommandList& list) { record(list, constants); });
+  pace_.measured(double(tile.size.x) * double(tile.size.y) * sample_count, milliseconds_since(start) / 1000);
 }
 
 bool Renderer::render(std::uint32_t samples, const Progress& progress) {
   if (samples > std::numeric_limits<std::uint32_t>::max() - samples_)
     throw Error(fmt::format("{} samples after {} are more than can be counted", samples, samples_));
-  prepare();
+  warm_up();
   const RenderSettings& settings = scene_.settings();
   const glm::uvec2 resolution(settings.width, settings.height);
   const double pixels = double(resolution.x) * double(resolution.y);

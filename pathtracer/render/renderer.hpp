@@ -24,6 +24,9 @@ class Renderer {
 
   /// Makes the program that renders, as render would otherwise when it is first called.
   void prepare();
+  /// Also runs it once without a sample, as render would otherwise: some drivers compile a shader when it first runs,
+  /// for minutes.
+  void warm_up();
 
   /// Adds `samples` to every pixel. False when `progress` cancelled: the picture is then empty again.
   bool render(std::uint32_t samples, const Progress& progress = {});
@@ -39,6 +42,8 @@ class Renderer {
   std::uint32_t samples() const noexcept { return samples_; }
   /// Rays traced for the samples of the picture, counted by the shader.
   std::uint64_t ray_count() const noexcept { return ray_count_; }
+  /// Time that prepare and warm_up have taken since the last restart, by the host's clock: what compiling takes.
+  double compile_milliseconds() const noexcept { return compile_milliseconds_; }
   /// Time that the dispatches took: by the device's timestamps where it has them, else by the host's clock.
   double device_milliseconds() const noexcept { return device_milliseconds_; }
 
@@ -51,6 +56,7 @@ class Renderer {
   ImageMetadata metadata() const;
 
  private:
+  void record(rhi::CommandList& list, const DispatchConstants& constants);
   void dispatch(const Tile& tile, std::uint32_t first_sample, std::uint32_t sample_count);
   void clear_picture();
   void collect_ray_counts();
@@ -61,6 +67,8 @@ class Renderer {
   std::uint32_t samples_ = 0;
   std::uint64_t ray_count_ = 0;
   double device_milliseconds_ = 0;
+  double compile_milliseconds_ = 0;
+  bool is_warm_ = false;
   Pace pace_{0.25};
 };
 

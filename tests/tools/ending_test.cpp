@@ -56,10 +56,9 @@ TANDEM_DEVICE_TEST("an interrupt ends the program in a driver's compiler, too, a
   const ScratchFolder folder;
   const auto started = std::chrono::steady_clock::now();
   // lavapipe compiles these shaders for minutes. What is faster finishes.
-  const Outcome outcome = run_tandem(words("render {} --device {} --size 8x8 --spp 1 -o x.png", {scenes + "still_life.glb", device_name}),
-                                     {.folder = folder.path(),
-                                      .interrupt_after_ms = 5000,
-                                      .environment = {"MESA_SHADER_CACHE_DISABLE=true"}});
+  const Outcome outcome = run_tandem(
+      words("render {} --device {} --size 8x8 --spp 1 -o x.png", {scenes + "still_life.glb", device_name}),
+      {.folder = folder.path(), .interrupt_after_ms = 5000, .environment = {"MESA_SHADER_CACHE_DISABLE=true"}});
   const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - started;
   if (outcome.exit_code == 0) return;
   CHECK(outcome.exit_code == 130);

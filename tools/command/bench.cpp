@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "compare/session/rendering.hpp"
 #include "pathtracer/render/renderer.hpp"
 #include "tools/command.hpp"
 #include "tools/options/job.hpp"
@@ -48,6 +49,7 @@ int measure_speed(const Options& options) {
       pathtracer::Renderer& renderer = *renderers[index];
       BenchSeries& series = report.series[index];
       renderer.restart(job.settings);
+      compare::compile(renderer, progress_bars());
       const std::string label = fmt::format("round {} of {}, {}", round, options.rounds, series.device.name);
       if (!renderer.render(job.samples, progress_bar(label))) throw Cancelled();
       series.rays = renderer.ray_count();

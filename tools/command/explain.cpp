@@ -13,6 +13,7 @@
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
+#include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/explanation_report.hpp"
 
@@ -50,7 +51,10 @@ int run(const Options& options) {
   const compare::ComparedDevices devices{.a = open_device(options.a, options.render),
                                          .b = open_device(options.b, options.render),
                                          .arbiter = open_device(options.arbiter, options.render)};
+  const StageProgress progress = progress_bars();
+  progress("tracing paths on all devices", 0);
   const compare::Explanation explanation = explain(devices, job, explanation_options);
+  progress("tracing paths on all devices", 1);
   print_warnings(explanation.warnings);
   print("{}", table(explanation, {.all_events = options.all_events, .colors = isatty(STDOUT_FILENO) != 0}));
   if (!options.json.empty()) write_text(options.json, json_text(to_json(explanation)));

@@ -8,7 +8,6 @@
 #include "pathtracer/load/generate.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
-#include "tools/output/interruption.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 
@@ -21,14 +20,8 @@ struct Options {
 };
 
 int generate(const Options& options) {
-  std::uint64_t triangles = 0;
-  {
-    ProgressBar bar("generate");
-    triangles = pathtracer::generate_spheres(options.triangles, options.output, [&](double fraction) {
-      bar.show(fraction);
-      return !interrupted();
-    });
-  }
+  const std::uint64_t triangles =
+      pathtracer::generate_spheres(options.triangles, options.output, progress_bar("generate"));
   if (triangles == 0) throw Cancelled();
   print("{}: {} triangles\n", options.output.string(), triangles);
   return exit_code::success;

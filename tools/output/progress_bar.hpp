@@ -1,33 +1,30 @@
 #pragma once
 
-#include <chrono>
+#include <memory>
 #include <string>
+#include <string_view>
 
 #include "base/progress.hpp"
 
 namespace tandem::tools {
 
-/// A bar with the percentage on the last line of a terminal, for work that takes longer than a second. Shows nothing
-/// when standard error is no terminal. The line is cleared when the bar goes.
+/// Shows how far work is, and what it waits for when it does not say, as a driver's compiler does not. On a terminal, a
+/// bar on the last line for work that takes longer than a second, which goes when the stage ends. Elsewhere, a line on
+/// standard error every half minute.
 class ProgressBar {
  public:
-  /// @param label what is going on: "cpu", "vulkan:0"
-  explicit ProgressBar(std::string label);
+  ProgressBar();
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// @param fraction of the work that is done, 0 to 1
-  void show(double fraction);
+  /// @param stage what is going on: "cpu", "shaders for vulkan:0"
+  /// @param fraction of the stage that is done, 0 to 1; it ends at 1
+  void show(std::string_view stage, double fraction);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
-  std::string label_;
-  bool terminal_;
-  bool drawn_ = false;
-  Clock::time_point started_ = Clock::now();
-  Clock::time_point last_drawn_ = started_;
+  class Display;
+  std::unique_ptr<Display> display_;
 };
 
 /// Progress as a bar for each stage. Cancels when the user has interrupted the program.

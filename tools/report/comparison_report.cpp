@@ -54,6 +54,8 @@ std::string table(const compare::Comparison& comparison) {
   columns("driver", comparison.a.device.driver, comparison.b.device.driver);
   columns("trace", std::string(pathtracer::name(comparison.a.trace)),
           std::string(pathtracer::name(comparison.b.trace)));
+  columns("compiling", fmt::format("{:.2f} ms", comparison.a.compile_milliseconds),
+          fmt::format("{:.2f} ms", comparison.b.compile_milliseconds));
   columns("time", fmt::format("{:.2f} ms", comparison.a.milliseconds),
           fmt::format("{:.2f} ms", comparison.b.milliseconds));
   columns("rays", fmt::format("{}", comparison.a.rays), fmt::format("{}", comparison.b.rays));
@@ -106,6 +108,8 @@ nlohmann::ordered_json to_json(const compare::Comparison& comparison) {
   json["ms_b"] = comparison.b.milliseconds;
   json["build_ms_a"] = comparison.a.build_milliseconds;
   json["build_ms_b"] = comparison.b.build_milliseconds;
+  json["compile_ms_a"] = comparison.a.compile_milliseconds;
+  json["compile_ms_b"] = comparison.b.compile_milliseconds;
   json["rays_a"] = comparison.a.rays;
   json["rays_b"] = comparison.b.rays;
   json["mrays_a"] = mrays(comparison.a);

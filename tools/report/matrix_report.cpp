@@ -145,6 +145,7 @@ nlohmann::ordered_json to_json(const MatrixReport& report) {
     Json device = to_json(rendering.device);
     device["trace"] = pathtracer::name(rendering.trace);
     device["ms"] = rendering.milliseconds;
+    device["compile_ms"] = rendering.compile_milliseconds;
     device["outvoted"] = votes.outvoted;
     device["beyond_tolerance"] = votes.beyond_tolerance;
     device["first_beyond"] =

@@ -78,8 +78,9 @@ std::string cell_html(const SuiteResult& result, const std::filesystem::path& fo
     add(", {:.4f} % bit-equal", 100 * report.at("bit_equal").get<double>());
     const std::string classes = class_counts(report);
     if (!classes.empty()) add("<br>{}", xml_text(classes));
-    add("<br><span class=\"hint\">{:.0f} ms, {:.0f} ms</span>", report.at("ms_a").get<double>(),
-        report.at("ms_b").get<double>());
+    add("<br><span class=\"hint\">{:.0f} ms, {:.0f} ms; compiling {:.0f} ms, {:.0f} ms</span>",
+        report.at("ms_a").get<double>(), report.at("ms_b").get<double>(), report.at("compile_ms_a").get<double>(),
+        report.at("compile_ms_b").get<double>());
   }
   if (json.contains("page")) add(" <a href=\"{}\">details</a>", xml_text(string(json, "page")));
   if (!json.at("reasons").empty()) {

@@ -113,6 +113,7 @@ function addDevices(numbers) {
   both("rays are traced by", "trace_a", "trace_b");
   both("rendering, ms", "ms_a", "ms_b");
   both("building structures, ms", "build_ms_a", "build_ms_b");
+  both("compiling shaders, ms", "compile_ms_a", "compile_ms_b");
   both("rays", "rays_a", "rays_b");
   both("millions of rays a second", "mrays_a", "mrays_b");
   addSection("Devices and time", [table(["", "a", "b"], rows)]);
@@ -184,7 +185,7 @@ function addRegions(numbers, goToRegion) {
 
 /** What has its own table above, or stands at the top of the page. */
 const shownElsewhere = new Set(["verdict", "tier", "reasons", "pixels", "thresholds", "metrics", "settings", "version", "device_a", "device_b",
-  ...metricRows.map(([key]) => key), ...["ms", "build_ms", "rays", "mrays", "trace"].flatMap((name) => [`${name}_a`, `${name}_b`])]);
+  ...metricRows.map(([key]) => key), ...["ms", "build_ms", "compile_ms", "rays", "mrays", "trace"].flatMap((name) => [`${name}_a`, `${name}_b`])]);
 
 function showNumbers(numbers, goToRegion) {
   addMetrics(numbers);
