@@ -20,7 +20,6 @@ namespace {
 struct Reading {
   const WavefrontText* text = nullptr;
   std::vector<MtlStatements> materials;  ///< so far
-  std::set<std::string> negative;        ///< names of materials with an exponent below 0
   std::set<std::string> maps;            ///< texture statements that are ignored
   std::set<std::string> options;         ///< of textures that are read
 };
@@ -44,17 +43,6 @@ glm::vec3 checked_color(const Reading& reading, const Statement& statement) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-/// Puts aside a statement that cannot be read, until it is known whether the material needs it.
-template <typename Read>
-void read_or_put_aside(MtlStatements& material, std::string_view keyword, const Read& read) {
-  try {
-    read();
-    material.unreadable.erase(std::string(keyword));
-  } catch (const Error& error) {
-    material.unreadable.insert_or_assign(std::string(keyword), error.what());
-  }
-}
-
 float checked_number(const Reading& reading, const Statement& statement, double largest, std::string_view what) {
   std::string_view rest = statement.rest;
   std::string_view word = take_word(rest);
@@ -63,17 +51,6 @@ float checked_number(const Reading& reading, const Statement& statement, double 
   if (!parse_number(word, value) || !(value >= 0 && value <= largest) || !std::isfinite(static_cast<float>(value)))
     throw reading.text->error(fmt::format("{} of '{}' is no {}", statement.keyword, word, what));
   return static_cast<float>(value);
-}
-
-/// Old exporters of Blender write exponents below 0; Blender reads them as 0.
-float exponent(Reading& reading, const Statement& statement) {
-  double value = 0;
-  std::string_view rest = statement.rest;
-  if (parse_number(take_word(rest), value) && value < 0 && std::isfinite(value)) {
-    reading.negative.insert(reading.materials.back().name);
-    return 0;
-  }
-  return checked_number(reading, statement, 1e30, "finite number of at least 0");
 }
 
 int checked_illum(const Reading& reading, const Statement& statement) {
@@ -117,20 +94,16 @@ void read(Reading& reading, std::string_view line) {
   MtlStatements& material = reading.materials.back();
   if (is_read_map)
     material.maps.insert_or_assign(std::string(map), parse_mtl_map(*reading.text, statement, reading.options));
-  else if (keyword == "illum")
-    material.illum = checked_illum(reading, statement);
+  else if (is_color)
+    material.colors.insert_or_assign(std::string(keyword), checked_color(reading, statement));
+  else if (is_fraction)
+    material.numbers.insert_or_assign(std::string(keyword),
+                                      checked_number(reading, statement, 1, "number from 0 to 1"));
+  else if (is_number)
+    material.numbers.insert_or_assign(std::string(keyword),
+                                      checked_number(reading, statement, 1e30, "finite number of at least 0"));
   else
-    read_or_put_aside(material, keyword, [&] {
-      if (is_color)
-        material.colors.insert_or_assign(std::string(keyword), checked_color(reading, statement));
-      else if (keyword == "Ns")
-        material.numbers.insert_or_assign(std::string(keyword), exponent(reading, statement));
-      else
-        material.numbers.insert_or_assign(
-            std::string(keyword), is_fraction
-                                      ? checked_number(reading, statement, 1, "number from 0 to 1")
-                                      : checked_number(reading, statement, 1e30, "finite number of at least 0"));
-    });
+    material.illum = checked_illum(reading, statement);
 }
 
 /// "a, b, c and 5 more"
@@ -171,8 +144,6 @@ std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vect
   warn(remarks.scaled, "{}: Kd and Ks add up to more than 1, so both are scaled down, of material {}");
   warn(remarks.without_ior, "{}: no index of refraction (Ni) is given, so 1.5 is used for material {}");
   warn(remarks.invisible, "{}: an opacity (d) of 0 makes invisible the material {}");
-  warn(reading.negative, "{}: an exponent (Ns) below 0 counts as 0 of material {}");
-  for (const std::string& sentence : remarks.unneeded) warnings.push_back(sentence);
   warn(repeated, "{}: only the first definition counts of material {}");
   return materials;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string_view>
 
-#include "base/error.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {
@@ -129,35 +128,12 @@ void keep_energy(GpuMaterial& material, const std::string& name, MtlRemarks& rem
   remarks.scaled.insert(name);
 }
 
-/// Whether a material of the model looks at the number or colour of a statement.
-bool needs(const MtlStatements& statements, MaterialModel model, std::string_view keyword) {
-  if (keyword == "Ke") return true;
-  if (keyword == "Ni") return model != MaterialModel::diffuse || statements.illum == 4 || statements.illum == 9;
-  const bool is_glass = model == MaterialModel::dielectric || model == MaterialModel::rough_dielectric;
-  if (keyword == "d" || keyword == "Tr") return !is_glass || statements.illum == 4 || statements.illum == 9;
-  // These choose the model, too.
-  if (keyword == "Pr" || keyword == "Pm") return true;
-  if (keyword == "Ks" && statements.illum == 2) return model != MaterialModel::principled;
-  for (const MapMember& entry : map_members)
-    if (entry.name == keyword) return std::ranges::find(entry.models, model) != entry.models.end();
-  return true;
-}
-
-/// Throws what the model needs and nobody can read, and remembers the rest.
-void check_unreadable(const MtlStatements& statements, MaterialModel model, MtlRemarks& remarks) {
-  for (const auto& [keyword, sentence] : statements.unreadable) {
-    if (needs(statements, model, keyword)) throw Error(sentence);
-    remarks.unneeded.push_back(sentence + "; the material does not need it");
-  }
-}
-
 }  // namespace
 
 NamedMaterial material_of(const MtlStatements& statements, MtlRemarks& remarks) {
   NamedMaterial result{.name = statements.name, .material = {}, .maps = {}};
   GpuMaterial& material = result.material;
   material.model = model_of(statements);
-  check_unreadable(statements, material.model, remarks);
   material.base_color = color(statements, "Kd", glm::vec3(0.5f));
   material.emission = color(statements, "Ke", glm::vec3(0));
   material.reflectance = color(statements, "Ks", glm::vec3(0));

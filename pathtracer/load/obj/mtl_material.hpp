@@ -4,7 +4,6 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "pathtracer/load/obj/mtl_loader.hpp"
 #include "pathtracer/load/obj/mtl_map.hpp"
@@ -17,9 +16,7 @@ struct MtlStatements {
   int illum = 0;
   std::map<std::string, glm::vec3, std::less<>> colors;  ///< Kd, Ks, Ke, Tf, where given
   std::map<std::string, float, std::less<>> numbers;     ///< Ni, Ns, Pr, Pm, d, Tr, where given
-  /// Why others of these cannot be read, with file and line; they count as not given.
-  std::map<std::string, std::string, std::less<>> unreadable;
-  std::map<std::string, MtlMap, std::less<>> maps;  ///< by the name of what they are of: Kd, d, bump, norm, ...
+  std::map<std::string, MtlMap, std::less<>> maps;       ///< by the name of what they are of: Kd, d, bump, norm, ...
 };
 
 /// Names of materials that were not taken as they stand, each kind worth one warning.
@@ -28,12 +25,9 @@ struct MtlRemarks {
   std::set<std::string> scaled;       ///< would have been, but for a factor on Kd and Ks
   std::set<std::string> without_ior;  ///< glass without Ni
   std::set<std::string> invisible;    ///< d 0
-  /// Sentences, with file and line, about statements that cannot be read and that the material does not need.
-  std::vector<std::string> unneeded;
 };
 
-/// The material that is meant (docs/guide/scenes.md). Throws Error for a statement that it needs and that cannot be
-/// read.
+/// The material that is meant (docs/guide/scenes.md).
 NamedMaterial material_of(const MtlStatements& statements, MtlRemarks& remarks);
 
 }  // namespace tandem::pathtracer

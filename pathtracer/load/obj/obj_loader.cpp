@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <unordered_map>
 
@@ -17,7 +16,6 @@
 
 #include "pathtracer/load/obj/mtl_loader.hpp"
 #include "pathtracer/load/obj/mtl_texture.hpp"
-#include "pathtracer/load/obj/obj_positions.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"
 #include "pathtracer/scene/polygon.hpp"
 
@@ -29,6 +27,8 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// Of a triangle before the first usemtl, until the end of the file.
 constexpr std::uint32_t no_material = triangle_smooth - 1;
 constexpr glm::vec3 grey{0.5f};
+/// The intersection of a ray with a triangle needs products of three coordinates, which must be finite floats.
+constexpr double largest_coordinate = 1e12;
 
 /// A triangle whose positions and normals are still numbered as in the file, from 0.
 struct FileTriangle {
@@ -43,7 +43,7 @@ struct Reading {
   WavefrontText* text = nullptr;
   ObjOptions options;
   Scene scene;  ///< its name, materials, textures and warnings
-  ObjPositions positions;
+  std::vector<glm::vec3> positions;
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> texture_coordinates;
   std::vector<FileTriangle> triangles;
@@ -53,8 +53,7 @@ struct Reading {
   std::set<std::string> libraries;
   TextureFiles textures;
   std::set<std::filesystem::path> missing_textures;
-  std::map<std::string, std::uint32_t, std::less<>> unknown_materials;  ///< used, but in no library so far
-  std::size_t missing_normals = 0;                                      ///< corners that name one that is not there
+  std::set<std::string> unknown_materials;
   std::size_t unusable_texture_coordinates = 0;
   std::set<std::string> ignored;  ///< keywords of elements that are no surfaces this loader knows
 };
@@ -98,16 +97,7 @@ void load_library(Reading& reading, const std::string& name) {
   for (NamedMaterial& entry : load_mtl(path, reading.scene.warnings)) {
     if (reading.material_names.contains(entry.name)) continue;
     load_textures(reading, entry, path.parent_path());
-    const auto used = reading.unknown_materials.find(entry.name);
-    std::uint32_t index = 0;
-    if (used == reading.unknown_materials.end()) {
-      index = add_material(reading, entry.name, entry.material);
-    } else {
-      index = used->second;
-      reading.scene.materials[index] = entry.material;
-      reading.unknown_materials.erase(used);
-    }
-    reading.material_names.emplace(entry.name, index);
+    reading.material_names.emplace(entry.name, add_material(reading, entry.name, entry.material));
   }
 }
 
@@ -127,12 +117,22 @@ void use_material(Reading& reading, std::string_view name) {
     reading.current_material = known->second;
     return;
   }
-  // A library that defines it may follow; it is grey until then.
-  const auto unknown = reading.unknown_materials.find(name);
-  reading.current_material = unknown != reading.unknown_materials.end()
-                                 ? unknown->second
-                                 : add_material(reading, std::string(name), diffuse_material(grey));
-  reading.unknown_materials.emplace(name, reading.current_material);
+  reading.unknown_materials.emplace(name);
+  reading.current_material = default_material(reading);
+}
+
+void check_position(const Reading& reading, const Statement& statement) {
+  std::string_view rest = statement.rest;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string_view word = take_word(rest);
+    double value = 0;
+    if (word.empty()) throw reading.text->error("a vertex has fewer than three coordinates");
+    if (!parse_number(word, value) || !std::isfinite(static_cast<float>(value)))
+      throw reading.text->error(fmt::format("the vertex coordinate '{}' is not a finite number", word));
+    if (std::abs(value) > largest_coordinate)
+      throw reading.text->error(fmt::format("the vertex coordinate '{}' is beyond {:g}, the farthest that rays reach",
+                                            word, largest_coordinate));
+  }
 }
 
 /// Exporters write coordinates that are no numbers, where nothing needs them.
@@ -149,31 +149,32 @@ std::string usable_texture_coordinates(Reading& reading, const Statement& statem
   return usable ? fmt::format("vt {} {}", static_cast<float>(values[0]), static_cast<float>(values[1])) : "vt 0 0";
 }
 
-/// Each corner is "v", "v/vt", "v//vn" or "v/vt/vn"; exporters also write slashes with nothing behind them, as in
-/// "v//". Returns the statement without these, and without a comment behind it.
+/// Each corner is "v", "v/vt", "v//vn" or "v/vt/vn". Returns the statement without a comment behind it.
 std::string checked_face(const Reading& reading, std::string_view text) {
-  std::string_view rest = split_statement(text.substr(0, text.find('#'))).rest;
-  std::string checked = "f";
+  text = text.substr(0, text.find('#'));
+  std::string_view rest = split_statement(text).rest;
   for (std::string_view corner = take_word(rest); !corner.empty(); corner = take_word(rest)) {
     const std::string_view word = corner;
     for (int part = 0;; ++part) {
       const std::size_t slash = std::min(corner.find('/'), corner.size());
       const std::string_view index = corner.substr(0, slash);
-      const bool may_be_empty = part > 0;
+      const bool may_be_empty = part == 1 && slash < corner.size();
       int value = 0;
       if (part > 2 || (!(index.empty() && may_be_empty) && (!parse_integer(index, value) || value == 0)))
         throw reading.text->error(fmt::format("'{}' is not a corner of a face", word));
       if (slash == corner.size()) break;
       corner.remove_prefix(slash + 1);
     }
-    checked.append(" ").append(word.substr(0, word.find_last_not_of('/') + 1));
   }
-  return checked;
+  return std::string(text);
 }
 
 std::string filter(Reading& reading, std::string_view text) {
   const Statement statement = split_statement(text);
-  if (statement.keyword == "v") reading.positions.add(*reading.text, statement);
+  if (statement.keyword == "v") {
+    check_position(reading, statement);
+    return std::string(text);
+  }
   if (statement.keyword == "vn") return std::string(text);
   if (statement.keyword == "vt") return usable_texture_coordinates(reading, statement);
   if (statement.keyword == "f") return checked_face(reading, text);
@@ -203,24 +204,16 @@ std::uint32_t resolve_texture_coordinate(const Reading& reading, int index) {
   return resolve(reading, index, count, "texture coordinate");
 }
 
-/// A normal that is not there makes the triangle flat.
-std::uint32_t resolve_normal(Reading& reading, int index) {
-  const std::size_t count = reading.normals.size();
-  if (index == 0) return none;
-  if (std::abs(std::int64_t{index}) <= std::int64_t(count)) return resolve(reading, index, count, "normal");
-  ++reading.missing_normals;
-  return none;
-}
-
 void add_face(Reading& reading, std::span<const tinyobj::index_t> corners) {
   if (corners.size() < 3) throw reading.text->error("a face has fewer than three corners");
   std::vector<std::uint32_t> positions, normals, texture_coordinates;
   std::vector<glm::vec3> polygon;
   for (const tinyobj::index_t& corner : corners) {
     positions.push_back(resolve(reading, corner.vertex_index, reading.positions.size(), "vertex"));
-    normals.push_back(resolve_normal(reading, corner.normal_index));
+    normals.push_back(
+        corner.normal_index == 0 ? none : resolve(reading, corner.normal_index, reading.normals.size(), "normal"));
     texture_coordinates.push_back(resolve_texture_coordinate(reading, corner.texcoord_index));
-    polygon.emplace_back(reading.positions.at(positions.back()));
+    polygon.push_back(reading.positions[positions.back()]);
   }
   for (const auto& [a, b, c] : triangulate(polygon))
     reading.triangles.push_back({{positions[a], positions[b], positions[c]},
@@ -231,6 +224,13 @@ void add_face(Reading& reading, std::span<const tinyobj::index_t> corners) {
 
 void parse(Reading& reading) {
   tinyobj::callback_t callbacks;
+  callbacks.vertex_cb = [](void* data, float x, float y, float z, float) {
+    Reading& reading = *static_cast<Reading*>(data);
+    // tinyobjloader loses count where a number has hundreds of digits.
+    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
+      throw reading.text->error("a vertex coordinate has too many digits");
+    reading.positions.emplace_back(x, y, z);
+  };
   callbacks.normal_cb = [](void* data, float x, float y, float z) {
     static_cast<Reading*>(data)->normals.emplace_back(x, y, z);
   };
@@ -248,8 +248,7 @@ void parse(Reading& reading) {
 /// Triangles before the first usemtl have the material of a library that defines just one, as some exporters mean it;
 /// else the grey one.
 void assign_materials(Reading& reading) {
-  const bool only_one =
-      reading.material_names.size() == 1 && !reading.default_material && reading.unknown_materials.empty();
+  const bool only_one = reading.material_names.size() == 1 && !reading.default_material;
   for (FileTriangle& triangle : reading.triangles)
     if (triangle.material == no_material) triangle.material = only_one ? 0 : default_material(reading);
 }
@@ -269,9 +268,9 @@ std::size_t normalize_all(std::vector<glm::vec3>& normals) {
 /// Whether all corners have a normal, and one of them deviates from the triangle's own by more than what rounding in
 /// the file explains (a thousandth: normals with three decimals).
 bool is_smooth(const Reading& reading, const FileTriangle& triangle) {
-  const glm::dvec3 a(reading.positions.at(triangle.positions[0]));
-  const glm::dvec3 b(reading.positions.at(triangle.positions[1]));
-  const glm::dvec3 c(reading.positions.at(triangle.positions[2]));
+  const glm::dvec3 a(reading.positions[triangle.positions[0]]);
+  const glm::dvec3 b(reading.positions[triangle.positions[1]]);
+  const glm::dvec3 c(reading.positions[triangle.positions[2]]);
   const glm::dvec3 area = glm::cross(b - a, c - a);
   if (!(glm::length(area) > 0)) return false;
   const glm::dvec3 flat = glm::normalize(area);
@@ -312,7 +311,7 @@ std::size_t assemble(Reading& reading) {
       const auto [entry, is_new] = vertices.try_emplace({source.positions[corner], normal, texture_coordinate},
                                                         static_cast<std::uint32_t>(scene.positions.size()));
       if (is_new) {
-        scene.positions.emplace_back(reading.positions.at(source.positions[corner]));
+        scene.positions.push_back(reading.positions[source.positions[corner]]);
         scene.normals.push_back(smooth ? reading.normals[normal] : glm::vec3(0, 0, 1));
         if (!scene.textures.empty())
           scene.texture_coordinates.push_back(
@@ -341,14 +340,8 @@ Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
   };
   if (const std::size_t unusable = normalize_all(reading.normals); unusable > 0)
     warn(fmt::format("{} vertex normals have no direction, so their triangles are flat", unusable));
-  if (reading.missing_normals > 0)
-    warn(fmt::format("{} corners name normals that are not there, so their triangles are flat",
-                     reading.missing_normals));
-  if (reading.positions.unusable() > 0)
-    warn(fmt::format("{} vertices are no positions; no face uses them", reading.positions.unusable()));
-  if (reading.positions.has_colors()) warn("colours of vertices are ignored");
   if (!reading.unknown_materials.empty())
-    warn(fmt::format("unknown materials are grey: {}", fmt::join(std::views::keys(reading.unknown_materials), ", ")));
+    warn(fmt::format("unknown materials are grey: {}", fmt::join(reading.unknown_materials, ", ")));
   if (!reading.ignored.empty())
     warn(fmt::format("only faces are read, not the elements {}", fmt::join(reading.ignored, ", ")));
   assign_materials(reading);

@@ -213,29 +213,3 @@ TEST_CASE("What cannot be meant is an error that names the line") {
   CHECK(contains(error_of(std::string("newmtl a\0b", 10)), "is not a text"));
   CHECK(load("# nothing\n").materials.empty());
 }
-
-TEST_CASE("A statement that cannot be read is an error where the material needs it, else a warning") {
-  const Loaded old = load("newmtl m\nNs -1.96\nKd 0.3 0.5 0.7\nKs 0 0 0\nillum 1\n");
-  CHECK(old.materials.at(0).material.base_color == glm::vec3(0.3f, 0.5f, 0.7f));
-  CHECK(contains(old.warnings.at(0), "an exponent (Ns) below 0 counts as 0 of material m"));
-  CHECK(load("newmtl m\nNs -2\nKs .5\nillum 2\n").materials.at(0).material.exponent == 0);
-  struct Case {
-    const char* statement;
-    const char* needed_by;
-    const char* unneeded_by;
-  };
-  for (const auto& [statement, needed_by, unneeded_by] :
-       {Case{"Ns nan", "illum 2\nKs 1 1 1", "illum 1"}, Case{"Ks -1", "illum 3", "illum 0"},
-        Case{"Tf x", "illum 7\nNi 1.5", "illum 2"}, Case{"Ni -3", "illum 6", "illum 1"},
-        Case{"Kd -1 0 0", "illum 1", "illum 3"}, Case{"d 2", "illum 1", "illum 6\nNi 1.5"}}) {
-    CAPTURE(statement);
-    const std::string text = std::string("newmtl m\n") + statement + "\n";
-    CHECK(contains(error_of(text + needed_by + "\n"), "test.mtl:2: "));
-    const Loaded loaded = load(text + unneeded_by + "\n");
-    REQUIRE(loaded.warnings.size() == 1);
-    CHECK(contains(loaded.warnings[0], "test.mtl:2: "));
-    CHECK(contains(loaded.warnings[0], "the material does not need it"));
-  }
-  // A later statement that can be read takes its place.
-  CHECK(load("newmtl m\nd x\nd 0.5\n").materials.at(0).material.opacity == 0.5f);
-}
