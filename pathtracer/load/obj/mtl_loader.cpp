@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "base/printable.hpp"
 #include "pathtracer/load/obj/mtl_material.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"
+#include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -32,9 +32,10 @@ glm::vec3 checked_color(const Reading& reading, const Statement& statement) {
   for (std::string_view word = take_word(rest); !word.empty() && word[0] != '#' && count < 3; word = take_word(rest)) {
     double value = 0;
     if (!parse_number(word, value))
-      throw reading.text->error(fmt::format("{} takes numbers, not '{}'", statement.keyword, word));
+      throw reading.text->error(fmt::format("{} takes numbers, not '{}'", statement.keyword, shortened(word)));
     if (!(value >= 0) || !std::isfinite(static_cast<float>(value)))
-      throw reading.text->error(fmt::format("{} of {} is not finite and at least 0", statement.keyword, word));
+      throw reading.text->error(
+          fmt::format("{} of {} is not finite and at least 0", statement.keyword, shortened(word)));
     numbers[count++] = static_cast<float>(value);
   }
   if (count == 1) return glm::vec3(numbers[0]);
@@ -49,7 +50,7 @@ float checked_number(const Reading& reading, const Statement& statement, double 
   if (word == "-halo") word = take_word(rest);
   double value = 0;
   if (!parse_number(word, value) || !(value >= 0 && value <= largest) || !std::isfinite(static_cast<float>(value)))
-    throw reading.text->error(fmt::format("{} of '{}' is no {}", statement.keyword, word, what));
+    throw reading.text->error(fmt::format("{} of '{}' is no {}", statement.keyword, shortened(word), what));
   return static_cast<float>(value);
 }
 
@@ -58,7 +59,7 @@ int checked_illum(const Reading& reading, const Statement& statement) {
   const std::string_view word = take_word(rest);
   int value = 0;
   if (!parse_integer(word, value) || value < 0 || value > 10)
-    throw reading.text->error(fmt::format("illum of '{}' is not one of the models 0 to 10", word));
+    throw reading.text->error(fmt::format("illum of '{}' is not one of the models 0 to 10", shortened(word)));
   return value;
 }
 
@@ -92,26 +93,25 @@ void read(Reading& reading, std::string_view line) {
   if (!is_read_map && !is_color && !is_fraction && !is_number && keyword != "illum") return;
   if (reading.materials.empty()) throw reading.text->error(fmt::format("{} stands before the first newmtl", keyword));
   MtlStatements& material = reading.materials.back();
-  if (is_read_map)
+  if (is_read_map) {
     material.maps.insert_or_assign(std::string(map), parse_mtl_map(*reading.text, statement, reading.options));
-  else if (is_color)
-    material.colors.insert_or_assign(std::string(keyword), checked_color(reading, statement));
-  else if (is_fraction)
-    material.numbers.insert_or_assign(std::string(keyword),
-                                      checked_number(reading, statement, 1, "number from 0 to 1"));
-  else if (is_number)
-    material.numbers.insert_or_assign(std::string(keyword),
-                                      checked_number(reading, statement, 1e30, "finite number of at least 0"));
-  else
-    material.illum = checked_illum(reading, statement);
-}
-
-/// "a, b, c and 5 more"
-std::string abbreviated(const std::set<std::string>& names) {
-  constexpr std::size_t shown = 4;
-  if (names.size() <= shown) return fmt::format("{}", fmt::join(names, ", "));
-  return fmt::format("{} and {} more", fmt::join(names.begin(), std::next(names.begin(), shown), ", "),
-                     names.size() - shown);
+    return;
+  }
+  const std::string name(keyword);
+  material.unusable.erase(name);
+  try {
+    if (is_color)
+      material.colors.insert_or_assign(name, checked_color(reading, statement));
+    else if (is_fraction)
+      material.numbers.insert_or_assign(name, checked_number(reading, statement, 1, "number from 0 to 1"));
+    else if (is_number)
+      material.numbers.insert_or_assign(name, checked_number(reading, statement, 1e30, "number from 0 to 1e+30"));
+    else
+      material.illum = checked_illum(reading, statement);
+  } catch (const Error& error) {
+    // Exporters write what is no value where nothing needs one.
+    material.unusable.insert_or_assign(name, error.what());
+  }
 }
 
 }  // namespace
@@ -127,16 +127,22 @@ std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vect
 
   std::vector<NamedMaterial> materials;
   MtlRemarks remarks;
-  std::set<std::string> repeated;
+  std::set<std::string> names, repeated;
   for (const MtlStatements& statements : reading.materials) {
-    const auto same_name = [&](const NamedMaterial& other) { return other.name == statements.name; };
-    if (std::ranges::any_of(materials, same_name))
+    if (!names.insert(statements.name).second) {
       repeated.insert(statements.name);
-    else
+      continue;
+    }
+    try {
       materials.push_back(material_of(statements, remarks));
+    } catch (const Error& error) {
+      materials.push_back(
+          {.name = statements.name, .material = diffuse_material(glm::vec3(0.5f)), .maps = {}, .error = error.what()});
+    }
   }
   const auto warn = [&](const std::set<std::string>& what, const char* sentence) {
-    if (!what.empty()) warnings.push_back(fmt::format(fmt::runtime(sentence), path.string(), abbreviated(what)));
+    const std::vector<std::string> list(what.begin(), what.end());
+    if (!what.empty()) warnings.push_back(fmt::format(fmt::runtime(sentence), path.string(), abbreviated(list)));
   };
   warn(reading.maps, "{}: textures of these kinds are not read: {}");
   warn(reading.options, "{}: options of textures are ignored: {}");
@@ -144,6 +150,7 @@ std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vect
   warn(remarks.scaled, "{}: Kd and Ks add up to more than 1, so both are scaled down, of material {}");
   warn(remarks.without_ior, "{}: no index of refraction (Ni) is given, so 1.5 is used for material {}");
   warn(remarks.invisible, "{}: an opacity (d) of 0 makes invisible the material {}");
+  warn(remarks.unneeded, "{}: values that cannot be used are ignored, since their materials do not need them: {}");
   warn(repeated, "{}: only the first definition counts of material {}");
   return materials;
 }

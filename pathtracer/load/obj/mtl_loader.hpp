@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,12 @@ struct NamedMaterial {
   std::string name;
   GpuMaterial material;  ///< without its textures
   std::vector<MaterialMap> maps;
+  std::optional<std::string> error = {};  ///< why nothing can have this material, with file and line
 };
 
-/// Reads a Wavefront MTL file; docs/guide/scenes.md says how its materials are understood. Throws Error, naming file
-/// and line; what is ignored is appended to `warnings`, one sentence each.
+/// Reads a Wavefront MTL file; docs/guide/scenes.md says how its materials are understood. A value that its material
+/// needs and that cannot be used is an error of this material alone, since nothing may use it. Throws Error, naming
+/// file and line; what is ignored is appended to `warnings`, one sentence each.
 std::vector<NamedMaterial> load_mtl(const std::filesystem::path& path, std::vector<std::string>& warnings);
 
 }  // namespace tandem::pathtracer

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "base/error.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {
@@ -13,7 +14,14 @@ constexpr float default_ior = 1.5f;
 /// Of a glossy material that gives none: what MTL files usually have.
 constexpr float default_exponent = 10;
 
+/// Throws Error where a value that is needed cannot be used.
+void require_usable(const MtlStatements& statements, std::string_view name) {
+  const auto entry = statements.unusable.find(name);
+  if (entry != statements.unusable.end()) throw Error(entry->second);
+}
+
 float number(const MtlStatements& statements, std::string_view name, float fallback) {
+  require_usable(statements, name);
   const auto entry = statements.numbers.find(name);
   return entry == statements.numbers.end() ? fallback : entry->second;
 }
@@ -22,6 +30,7 @@ bool has_map(const MtlStatements& statements, std::string_view name) { return st
 
 /// A factor that is not given is 1 where there is a map, so that the map is the value.
 glm::vec3 color(const MtlStatements& statements, std::string_view name, glm::vec3 fallback) {
+  require_usable(statements, name);
   const auto entry = statements.colors.find(name);
   if (entry != statements.colors.end()) return entry->second;
   return has_map(statements, name) ? glm::vec3(1) : fallback;
@@ -32,12 +41,16 @@ float physical(const MtlStatements& statements, std::string_view name, float fal
 }
 
 bool is_given(const MtlStatements& statements, std::string_view name) {
-  return statements.numbers.contains(name) || has_map(statements, name);
+  return statements.numbers.contains(name) || has_map(statements, name) || statements.unusable.contains(name);
 }
 
-float opacity(const MtlStatements& statements) { return number(statements, "d", 1 - number(statements, "Tr", 0)); }
+float opacity(const MtlStatements& statements) {
+  const bool is_opacity = statements.numbers.contains("d") || statements.unusable.contains("d");
+  return is_opacity ? number(statements, "d", 1) : 1 - number(statements, "Tr", 0);
+}
 
 MaterialModel model_of(const MtlStatements& statements) {
+  require_usable(statements, "illum");
   switch (statements.illum) {
     case 4:
     case 9: {
@@ -134,15 +147,21 @@ NamedMaterial material_of(const MtlStatements& statements, MtlRemarks& remarks) 
   NamedMaterial result{.name = statements.name, .material = {}, .maps = {}};
   GpuMaterial& material = result.material;
   material.model = model_of(statements);
-  material.base_color = color(statements, "Kd", glm::vec3(0.5f));
-  material.emission = color(statements, "Ke", glm::vec3(0));
-  material.reflectance = color(statements, "Ks", glm::vec3(0));
-  // A filter that lets nothing pass is no glass; exporters write it all the same.
-  const glm::vec3 filter = color(statements, "Tf", glm::vec3(1));
-  if (filter != glm::vec3(0)) material.transmittance = filter;
-  const float ior = number(statements, "Ni", 0);
   const bool is_glass =
       material.model == MaterialModel::dielectric || material.model == MaterialModel::rough_dielectric;
+  const bool has_ior = is_glass || material.model == MaterialModel::principled;
+  // What the model does not look at may be wrong.
+  const auto color_of = [&](std::string_view name, glm::vec3 fallback, bool is_needed) {
+    return is_needed || !statements.unusable.contains(name) ? color(statements, name, fallback) : fallback;
+  };
+  material.base_color = color_of("Kd", glm::vec3(0.5f), !is_glass && material.model != MaterialModel::mirror);
+  material.emission = color(statements, "Ke", glm::vec3(0));
+  material.reflectance = color_of(
+      "Ks", glm::vec3(0), material.model == MaterialModel::mirror || material.model == MaterialModel::blinn_phong);
+  // A filter that lets nothing pass is no glass; exporters write it all the same.
+  const glm::vec3 filter = color_of("Tf", glm::vec3(1), is_glass);
+  if (filter != glm::vec3(0)) material.transmittance = filter;
+  const float ior = has_ior ? number(statements, "Ni", 0) : 0;
   // Exporters give glass a d below 1 to say that it is glass, which its model says already.
   if (!is_glass) material.opacity = opacity(statements);
   if (is_glass) material.ior = ior == 0 ? default_ior : ior;
@@ -158,6 +177,8 @@ NamedMaterial material_of(const MtlStatements& statements, MtlRemarks& remarks) 
   keep_energy(material, statements.name, remarks);
   if (material.opacity == 0) remarks.invisible.insert(statements.name);
   add_maps(result, statements);
+  // Whatever was needed has been looked at.
+  for (const auto& [name, why] : statements.unusable) remarks.unneeded.insert(name + " of " + statements.name);
   return result;
 }
 

@@ -1,7 +1,5 @@
 #include "pathtracer/load/obj/mtl_texture.hpp"
 
-#include <algorithm>
-#include <array>
 #include <bit>
 #include <system_error>
 
@@ -15,12 +13,6 @@ TextureImage load(const std::filesystem::path& file, MapKind kind) {
   return load_texture_image(file, kind == MapKind::color ? TextureEncoding::color : TextureEncoding::data);
 }
 
-/// Whether two textures of the same image read it in the same way.
-bool same_use(const GpuTexture& a, const GpuTexture& b) {
-  using Bytes = std::array<std::byte, sizeof(GpuTexture)>;
-  return std::bit_cast<Bytes>(a) == std::bit_cast<Bytes>(b);
-}
-
 }  // namespace
 
 std::optional<std::filesystem::path> find_texture(const std::filesystem::path& folder,
@@ -30,21 +22,20 @@ std::optional<std::filesystem::path> find_texture(const std::filesystem::path& f
                                               folder / ".." / "textures" / last};
   std::error_code status_error;
   for (const std::filesystem::path& candidate : candidates)
-    if (std::filesystem::is_regular_file(candidate, status_error)) return candidate.lexically_normal();
+    if (std::filesystem::exists(candidate, status_error) && !std::filesystem::is_directory(candidate, status_error))
+      return candidate.lexically_normal();
   return {};
 }
 
 std::uint32_t texture_of(Scene& scene, TextureFiles& files, const std::filesystem::path& file, const MaterialMap& map) {
-  const auto [entry, is_new] = files.try_emplace({file, map.kind}, static_cast<std::uint32_t>(scene.images.size()));
+  const auto [entry, is_new] =
+      files.images.try_emplace({file, map.kind}, static_cast<std::uint32_t>(scene.images.size()));
   if (is_new) scene.images.push_back(load(file, map.kind));
   const std::uint32_t image = entry->second;
-  const auto same = [&](const Texture& texture) {
-    return texture.image == image && same_use(texture.gpu, map.texture);
-  };
-  const auto known = std::ranges::find_if(scene.textures, same);
-  const auto index = static_cast<std::uint32_t>(known - scene.textures.begin());
-  if (known == scene.textures.end()) scene.textures.push_back({.gpu = map.texture, .image = image});
-  return index;
+  const TextureFiles::Use use(image, std::bit_cast<std::array<std::byte, sizeof(GpuTexture)>>(map.texture));
+  const auto [texture, is_new_use] = files.textures.try_emplace(use, static_cast<std::uint32_t>(scene.textures.size()));
+  if (is_new_use) scene.textures.push_back({.gpu = map.texture, .image = image});
+  return texture->second;
 }
 
 }  // namespace tandem::pathtracer

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,8 +18,13 @@ namespace tandem::pathtracer {
 std::optional<std::filesystem::path> find_texture(const std::filesystem::path& folder,
                                                   const std::filesystem::path& name);
 
-/// The images of a scene by their files, so that each is read once.
-using TextureFiles = std::map<std::pair<std::filesystem::path, MapKind>, std::uint32_t>;
+/// The images of a scene by their files, so that each is read once, and its textures by what they read and how.
+struct TextureFiles {
+  using Use = std::pair<std::uint32_t, std::array<std::byte, sizeof(GpuTexture)>>;
+
+  std::map<std::pair<std::filesystem::path, MapKind>, std::uint32_t> images;
+  std::map<Use, std::uint32_t> textures;
+};
 
 /// The index of the texture of a scene that reads `file` as `map` says; added where there is none yet. Throws Error,
 /// naming the file.

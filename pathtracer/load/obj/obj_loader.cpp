@@ -14,8 +14,8 @@
 #include <tiny_obj_loader.h>
 #include <glm/geometric.hpp>
 
-#include "pathtracer/load/obj/mtl_loader.hpp"
-#include "pathtracer/load/obj/mtl_texture.hpp"
+#include "base/printable.hpp"
+#include "pathtracer/load/obj/obj_materials.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"
 #include "pathtracer/scene/polygon.hpp"
 
@@ -24,13 +24,24 @@ namespace {
 
 /// In place of the index of a normal or texture coordinate.
 constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-/// Of a triangle before the first usemtl, until the end of the file.
-constexpr std::uint32_t no_material = triangle_smooth - 1;
-constexpr glm::vec3 grey{0.5f};
 /// The intersection of a ray with a triangle needs products of three coordinates, which must be finite floats.
 constexpr double largest_coordinate = 1e12;
 
-/// A triangle whose positions and normals are still numbered as in the file, from 0.
+/// Indices as in the file, from 1; 0 for none. Those that count from the end have been counted, but for those that lead
+/// before the beginning.
+struct FileCorner {
+  int position;
+  int texture_coordinate;
+  int normal;
+};
+
+struct FileFace {
+  std::size_t first_corner;
+  std::size_t line;
+  std::uint32_t use;  ///< of a material
+};
+
+/// A triangle whose positions and normals are numbered as in the file, from 0.
 struct FileTriangle {
   std::array<std::uint32_t, 3> positions;
   std::array<std::uint32_t, 3> normals;              ///< or none
@@ -38,101 +49,50 @@ struct FileTriangle {
   std::uint32_t material;
 };
 
-/// What the file has said so far.
-struct Reading {
-  WavefrontText* text = nullptr;
-  ObjOptions options;
-  Scene scene;  ///< its name, materials, textures and warnings
-  std::vector<glm::vec3> positions;
-  std::vector<glm::vec3> normals;
-  std::vector<glm::vec2> texture_coordinates;
-  std::vector<FileTriangle> triangles;
-  std::map<std::string, std::uint32_t, std::less<>> material_names;
-  std::uint32_t current_material = no_material;
-  std::optional<std::uint32_t> default_material;
-  std::set<std::string> libraries;
-  TextureFiles textures;
-  std::set<std::filesystem::path> missing_textures;
-  std::set<std::string> unknown_materials;
-  std::size_t unusable_texture_coordinates = 0;
-  std::set<std::string> ignored;  ///< keywords of elements that are no surfaces this loader knows
+/// Why a vertex can be no corner.
+struct UnusableVertex {
+  std::size_t line;
+  std::string why;
 };
 
-std::uint32_t add_material(Reading& reading, const std::string& name, const GpuMaterial& material) {
-  reading.scene.materials.push_back(material);
-  reading.scene.material_names.push_back(name);
-  return static_cast<std::uint32_t>(reading.scene.materials.size() - 1);
-}
+/// What the file has said so far. Faces are made of it at the end: statements may come in any order, and what no face
+/// uses may be wrong.
+struct Reading {
+  WavefrontText* text = nullptr;
+  Scene scene;  ///< its name, materials, textures and warnings
+  std::vector<glm::vec3> positions;
+  std::map<std::size_t, UnusableVertex> unusable_positions;  ///< by index
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> texture_coordinates;
+  std::vector<FileCorner> corners;  ///< of the faces, one face behind the other
+  std::vector<FileFace> faces;
+  std::vector<FileTriangle> triangles;
+  std::optional<ObjMaterials> materials;
+  std::uint32_t current_use = ObjMaterials::unnamed;
+  std::size_t unusable_texture_coordinates = 0;
+  std::size_t absent_normals = 0;              ///< corners whose index is out of range
+  std::size_t absent_texture_coordinates = 0;  ///< likewise, where no texture needs them
+  std::set<std::string> ignored;               ///< keywords of elements that are no surfaces this loader knows
+};
 
-std::uint32_t default_material(Reading& reading) {
-  if (!reading.default_material) reading.default_material = add_material(reading, "default", diffuse_material(grey));
-  return *reading.default_material;
-}
-
-/// Gives a material its textures. `folder` is that of the MTL file.
-void load_textures(Reading& reading, NamedMaterial& entry, const std::filesystem::path& folder) {
-  for (const MaterialMap& map : entry.maps) {
-    if (const auto file = find_texture(folder, map.file)) {
-      entry.material.*map.member = texture_of(reading.scene, reading.textures, *file, map);
-      continue;
-    }
-    const std::filesystem::path path = folder / map.file;
-    const std::string sentence = fmt::format("the texture '{}' does not exist", path.string());
-    if (!reading.options.allow_missing_mtl) throw reading.text->error(sentence);
-    if (reading.missing_textures.insert(path).second)
-      reading.scene.warnings.push_back(reading.text->error(sentence).what());
-  }
-}
-
-void load_library(Reading& reading, const std::string& name) {
-  if (!reading.libraries.insert(name).second) return;
-  const std::filesystem::path path = reading.text->path().parent_path() / name;
-  std::error_code status_error;
-  if (!std::filesystem::exists(path, status_error)) {
-    const std::string sentence = fmt::format("the material file '{}' does not exist", path.string());
-    if (!reading.options.allow_missing_mtl) throw reading.text->error(sentence);
-    reading.scene.warnings.push_back(reading.text->error(sentence).what());
-    return;
-  }
-  for (NamedMaterial& entry : load_mtl(path, reading.scene.warnings)) {
-    if (reading.material_names.contains(entry.name)) continue;
-    load_textures(reading, entry, path.parent_path());
-    reading.material_names.emplace(entry.name, add_material(reading, entry.name, entry.material));
-  }
-}
-
-/// `names` is one file name, or several without blanks.
-void load_libraries(Reading& reading, std::string_view names) {
-  if (names.empty()) throw reading.text->error("mtllib names no file");
-  std::error_code status_error;
-  if (std::filesystem::exists(reading.text->path().parent_path() / names, status_error))
-    return load_library(reading, std::string(names));
-  for (std::string_view name = take_word(names); !name.empty(); name = take_word(names))
-    load_library(reading, std::string(name));
-}
-
-void use_material(Reading& reading, std::string_view name) {
-  const auto known = reading.material_names.find(name);
-  if (known != reading.material_names.end()) {
-    reading.current_material = known->second;
-    return;
-  }
-  reading.unknown_materials.emplace(name);
-  reading.current_material = default_material(reading);
-}
-
-void check_position(const Reading& reading, const Statement& statement) {
+/// "v x y z", or zeros in place of what a face cannot use.
+std::string usable_position(Reading& reading, std::string_view text, const Statement& statement) {
   std::string_view rest = statement.rest;
+  std::string why;
   for (int axis = 0; axis < 3; ++axis) {
     const std::string_view word = take_word(rest);
     double value = 0;
     if (word.empty()) throw reading.text->error("a vertex has fewer than three coordinates");
+    if (!why.empty()) continue;
     if (!parse_number(word, value) || !std::isfinite(static_cast<float>(value)))
-      throw reading.text->error(fmt::format("the vertex coordinate '{}' is not a finite number", word));
-    if (std::abs(value) > largest_coordinate)
-      throw reading.text->error(fmt::format("the vertex coordinate '{}' is beyond {:g}, the farthest that rays reach",
-                                            word, largest_coordinate));
+      why = fmt::format("the vertex coordinate '{}' is not a finite number", shortened(word));
+    else if (std::abs(value) > largest_coordinate)
+      why = fmt::format("the vertex coordinate '{}' is beyond {:g}, the farthest that rays reach", shortened(word),
+                        largest_coordinate);
   }
+  if (why.empty()) return std::string(text);
+  reading.unusable_positions.emplace(reading.positions.size(), UnusableVertex{reading.text->line(), why});
+  return "v 0 0 0";
 }
 
 /// Exporters write coordinates that are no numbers, where nothing needs them.
@@ -149,77 +109,62 @@ std::string usable_texture_coordinates(Reading& reading, const Statement& statem
   return usable ? fmt::format("vt {} {}", static_cast<float>(values[0]), static_cast<float>(values[1])) : "vt 0 0";
 }
 
-/// Each corner is "v", "v/vt", "v//vn" or "v/vt/vn". Returns the statement without a comment behind it.
+/// Each corner is "v", "v/vt", "v//vn" or "v/vt/vn"; parts behind may be empty too ("v//", "v/vt/"). Returns the
+/// statement with the parts that are there, and without a comment behind it.
 std::string checked_face(const Reading& reading, std::string_view text) {
   text = text.substr(0, text.find('#'));
   std::string_view rest = split_statement(text).rest;
+  std::string checked = "f";
   for (std::string_view corner = take_word(rest); !corner.empty(); corner = take_word(rest)) {
     const std::string_view word = corner;
-    for (int part = 0;; ++part) {
+    std::array<std::string_view, 3> parts;
+    std::size_t count = 0;
+    for (bool more = true; more; ++count) {
       const std::size_t slash = std::min(corner.find('/'), corner.size());
       const std::string_view index = corner.substr(0, slash);
-      const bool may_be_empty = part == 1 && slash < corner.size();
       int value = 0;
-      if (part > 2 || (!(index.empty() && may_be_empty) && (!parse_integer(index, value) || value == 0)))
-        throw reading.text->error(fmt::format("'{}' is not a corner of a face", word));
-      if (slash == corner.size()) break;
-      corner.remove_prefix(slash + 1);
+      if (count == 3 || (index.empty() && count == 0) ||
+          (!index.empty() && (!parse_integer(index, value) || value == 0)))
+        throw reading.text->error(fmt::format("'{}' is not a corner of a face", shortened(word)));
+      parts[count] = index;
+      more = slash < corner.size();
+      corner.remove_prefix(std::min(slash + 1, corner.size()));
     }
+    checked.append(" ").append(parts[0]);
+    if (!parts[1].empty() || !parts[2].empty()) checked.append("/").append(parts[1]);
+    if (!parts[2].empty()) checked.append("/").append(parts[2]);
   }
-  return std::string(text);
+  return checked;
 }
 
 std::string filter(Reading& reading, std::string_view text) {
   const Statement statement = split_statement(text);
-  if (statement.keyword == "v") {
-    check_position(reading, statement);
-    return std::string(text);
-  }
+  if (statement.keyword == "v") return usable_position(reading, text, statement);
   if (statement.keyword == "vn") return std::string(text);
   if (statement.keyword == "vt") return usable_texture_coordinates(reading, statement);
   if (statement.keyword == "f") return checked_face(reading, text);
-  if (statement.keyword == "usemtl") use_material(reading, statement.rest);
-  if (statement.keyword == "mtllib") load_libraries(reading, statement.rest);
+  if (statement.keyword == "usemtl") reading.current_use = reading.materials->use(statement.rest);
+  if (statement.keyword == "mtllib") reading.materials->load_libraries(statement.rest);
   for (const std::string_view element : {"p", "l", "curv", "curv2", "surf"})
     if (statement.keyword == element) reading.ignored.emplace(element);
   return {};
 }
 
-std::uint32_t resolve(const Reading& reading, int index, std::size_t count, std::string_view what) {
-  const std::int64_t resolved = index > 0 ? std::int64_t{index} - 1 : std::int64_t(count) + index;
-  if (resolved < 0 || resolved >= std::int64_t(count))
-    throw reading.text->error(fmt::format("the {} index {} is out of range: there are {} so far", what, index, count));
-  return static_cast<std::uint32_t>(resolved);
+/// An index that counts from the last element read so far, as one that counts from the first.
+int counted(int index, std::size_t count) {
+  const std::int64_t result = std::int64_t(count) + index + 1;
+  return index < 0 && result > 0 ? static_cast<int>(result) : index;
 }
 
-bool has_texture(const Reading& reading, std::uint32_t material) {
-  return material != no_material && pathtracer::has_texture(reading.scene.materials[material]);
-}
-
-/// What no texture needs may be wrong.
-std::uint32_t resolve_texture_coordinate(const Reading& reading, int index) {
-  const std::size_t count = reading.texture_coordinates.size();
-  if (index == 0) return none;
-  if (!has_texture(reading, reading.current_material) && std::abs(index) > std::int64_t(count)) return none;
-  return resolve(reading, index, count, "texture coordinate");
-}
+bool is_there(int index, std::size_t count) { return index > 0 && std::int64_t{index} <= std::int64_t(count); }
 
 void add_face(Reading& reading, std::span<const tinyobj::index_t> corners) {
   if (corners.size() < 3) throw reading.text->error("a face has fewer than three corners");
-  std::vector<std::uint32_t> positions, normals, texture_coordinates;
-  std::vector<glm::vec3> polygon;
-  for (const tinyobj::index_t& corner : corners) {
-    positions.push_back(resolve(reading, corner.vertex_index, reading.positions.size(), "vertex"));
-    normals.push_back(
-        corner.normal_index == 0 ? none : resolve(reading, corner.normal_index, reading.normals.size(), "normal"));
-    texture_coordinates.push_back(resolve_texture_coordinate(reading, corner.texcoord_index));
-    polygon.push_back(reading.positions[positions.back()]);
-  }
-  for (const auto& [a, b, c] : triangulate(polygon))
-    reading.triangles.push_back({{positions[a], positions[b], positions[c]},
-                                 {normals[a], normals[b], normals[c]},
-                                 {texture_coordinates[a], texture_coordinates[b], texture_coordinates[c]},
-                                 reading.current_material});
+  reading.faces.push_back({reading.corners.size(), reading.text->line(), reading.current_use});
+  for (const tinyobj::index_t& corner : corners)
+    reading.corners.push_back({counted(corner.vertex_index, reading.positions.size()),
+                               counted(corner.texcoord_index, reading.texture_coordinates.size()),
+                               counted(corner.normal_index, reading.normals.size())});
 }
 
 void parse(Reading& reading) {
@@ -228,7 +173,8 @@ void parse(Reading& reading) {
     Reading& reading = *static_cast<Reading*>(data);
     // tinyobjloader loses count where a number has hundreds of digits.
     if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-      throw reading.text->error("a vertex coordinate has too many digits");
+      reading.unusable_positions.emplace(
+          reading.positions.size(), UnusableVertex{reading.text->line(), "a vertex coordinate has too many digits"});
     reading.positions.emplace_back(x, y, z);
   };
   callbacks.normal_cb = [](void* data, float x, float y, float z) {
@@ -245,12 +191,71 @@ void parse(Reading& reading) {
   if (!error.empty()) throw Error(fmt::format("{}: {}", reading.text->path().string(), error));
 }
 
-/// Triangles before the first usemtl have the material of a library that defines just one, as some exporters mean it;
-/// else the grey one.
-void assign_materials(Reading& reading) {
-  const bool only_one = reading.material_names.size() == 1 && !reading.default_material;
-  for (FileTriangle& triangle : reading.triangles)
-    if (triangle.material == no_material) triangle.material = only_one ? 0 : default_material(reading);
+std::uint32_t position_of(const Reading& reading, const FileFace& face, const FileCorner& corner) {
+  const std::size_t count = reading.positions.size();
+  if (!is_there(corner.position, count))
+    throw reading.text->error_at(
+        face.line, fmt::format("the vertex index {} is out of range: there are {}", corner.position, count));
+  const auto index = static_cast<std::uint32_t>(corner.position - 1);
+  const auto unusable = reading.unusable_positions.find(index);
+  if (unusable != reading.unusable_positions.end())
+    throw reading.text->error_at(unusable->second.line, unusable->second.why);
+  return index;
+}
+
+std::uint32_t normal_of(Reading& reading, const FileCorner& corner) {
+  if (is_there(corner.normal, reading.normals.size())) return static_cast<std::uint32_t>(corner.normal - 1);
+  reading.absent_normals += corner.normal != 0 ? 1 : 0;
+  return none;
+}
+
+std::uint32_t texture_coordinate_of(Reading& reading, const FileFace& face, const FileCorner& corner, bool is_needed) {
+  const std::size_t count = reading.texture_coordinates.size();
+  const int index = corner.texture_coordinate;
+  if (is_there(index, count)) return static_cast<std::uint32_t>(index - 1);
+  if (index != 0 && is_needed)
+    throw reading.text->error_at(
+        face.line, fmt::format("the texture coordinate index {} is out of range: there are {}", index, count));
+  reading.absent_texture_coordinates += index != 0 ? 1 : 0;
+  return none;
+}
+
+void add_triangles(Reading& reading, const FileFace& face, std::span<const FileCorner> corners,
+                   std::uint32_t material) {
+  const bool is_textured = has_texture(reading.scene.materials[material]);
+  std::vector<std::uint32_t> positions, normals, texture_coordinates;
+  std::vector<glm::vec3> polygon;
+  for (const FileCorner& corner : corners) {
+    positions.push_back(position_of(reading, face, corner));
+    normals.push_back(normal_of(reading, corner));
+    texture_coordinates.push_back(texture_coordinate_of(reading, face, corner, is_textured));
+    polygon.push_back(reading.positions[positions.back()]);
+  }
+  try {
+    for (const auto& [a, b, c] : triangulate(polygon))
+      reading.triangles.push_back({{positions[a], positions[b], positions[c]},
+                                   {normals[a], normals[b], normals[c]},
+                                   {texture_coordinates[a], texture_coordinates[b], texture_coordinates[c]},
+                                   material});
+  } catch (const Error& error) {
+    throw reading.text->error_at(face.line, error.what());
+  }
+}
+
+/// Makes triangles of the faces, now that all elements and materials are known.
+void resolve_faces(Reading& reading) {
+  std::vector<bool> used;
+  for (const FileFace& face : reading.faces) {
+    used.resize(std::max<std::size_t>(used.size(), face.use + std::size_t{1}));
+    used[face.use] = true;
+  }
+  const std::vector<std::uint32_t> materials = reading.materials->resolve(std::move(used));
+  for (std::size_t i = 0; i < reading.faces.size(); ++i) {
+    const FileFace& face = reading.faces[i];
+    const std::size_t end = i + 1 < reading.faces.size() ? reading.faces[i + 1].first_corner : reading.corners.size();
+    add_triangles(reading, face, std::span(reading.corners).subspan(face.first_corner, end - face.first_corner),
+                  materials[face.use]);
+  }
 }
 
 /// Makes unit vectors of the normals; those that have no direction become zero. Returns how many.
@@ -302,7 +307,7 @@ std::size_t assemble(Reading& reading) {
   scene.triangles.reserve(reading.triangles.size());
   for (const FileTriangle& source : reading.triangles) {
     const bool smooth = is_smooth(reading, source);
-    const bool textured = has_texture(reading, source.material);
+    const bool textured = has_texture(scene.materials[source.material]);
     if (textured && std::ranges::count(source.texture_coordinates, none) > 0) ++lacking;
     GpuTriangle triangle{.vertices = {}, .material = source.material | (smooth ? triangle_smooth : 0)};
     for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -328,23 +333,30 @@ std::size_t assemble(Reading& reading) {
 
 Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
   Reading reading;
-  reading.options = options;
   reading.scene.name = path.filename().string();
   WavefrontText text(path, [&](std::string_view statement) { return filter(reading, statement); });
   reading.text = &text;
+  reading.materials.emplace(text, options.allow_missing_mtl, reading.scene);
   parse(reading);
-  if (reading.triangles.empty()) throw Error(fmt::format("'{}' holds no triangles", path.string()));
+  if (reading.faces.empty()) throw Error(fmt::format("'{}' holds no triangles", path.string()));
+  resolve_faces(reading);
 
   const auto warn = [&](std::string sentence) {
     reading.scene.warnings.push_back(fmt::format("{}: {}", path.string(), sentence));
   };
+  if (const std::size_t unusable = reading.unusable_positions.size(); unusable > 0)
+    warn(fmt::format("{} vertices cannot be used, and no face does ({})", unusable,
+                     reading.unusable_positions.begin()->second.why));
   if (const std::size_t unusable = normalize_all(reading.normals); unusable > 0)
     warn(fmt::format("{} vertex normals have no direction, so their triangles are flat", unusable));
-  if (!reading.unknown_materials.empty())
-    warn(fmt::format("unknown materials are grey: {}", fmt::join(reading.unknown_materials, ", ")));
+  if (reading.absent_normals > 0)
+    warn(fmt::format("{} corners name normals that the file does not have, so their triangles are flat",
+                     reading.absent_normals));
+  if (reading.absent_texture_coordinates > 0)
+    warn(fmt::format("{} corners name texture coordinates that the file does not have, and no texture needs",
+                     reading.absent_texture_coordinates));
   if (!reading.ignored.empty())
     warn(fmt::format("only faces are read, not the elements {}", fmt::join(reading.ignored, ", ")));
-  assign_materials(reading);
   if (const std::size_t lacking = assemble(reading); lacking > 0)
     warn(fmt::format(
         "{} triangles with a texture lack texture coordinates, so they have those of its lower left corner", lacking));

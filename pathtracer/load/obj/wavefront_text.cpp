@@ -1,11 +1,15 @@
 #include "pathtracer/load/obj/wavefront_text.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "base/printable.hpp"
 #include "base/text_file.hpp"
 
 namespace tandem::pathtracer {
@@ -35,8 +39,12 @@ WavefrontText::WavefrontText(std::filesystem::path path, Filter filter)
   stream_.exceptions(std::ios::badbit);
 }
 
-Error WavefrontText::error(std::string_view why) const {
-  return Error(fmt::format("{}:{}: {}", path_.string(), line_, why));
+std::string WavefrontText::place() const { return fmt::format("{}:{}", path_.string(), line_); }
+
+Error WavefrontText::error(std::string_view why) const { return error_at(line_, why); }
+
+Error WavefrontText::error_at(std::size_t line, std::string_view why) const {
+  return Error(fmt::format("{}:{}: {}", path_.string(), line, why));
 }
 
 bool WavefrontText::next_statement(std::string& statement) {
@@ -94,6 +102,15 @@ bool parse_number(std::string_view word, double& value) {
   value = static_cast<double>(wide);
   return true;
 }
+
 bool parse_integer(std::string_view word, int& value) { return parse_whole(word, value); }
+
+std::string abbreviated(std::span<const std::string> names) {
+  constexpr std::size_t most = 4;
+  std::vector<std::string> shown;
+  for (const std::string& name : names.first(std::min(names.size(), most))) shown.push_back(shortened(name));
+  const std::string more = names.size() > most ? fmt::format(" and {} more", names.size() - most) : std::string();
+  return fmt::format("{}{}", fmt::join(shown, ", "), more);
+}
 
 }  // namespace tandem::pathtracer

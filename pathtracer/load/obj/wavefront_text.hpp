@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <istream>
+#include <span>
 #include <streambuf>
 #include <string>
 #include <string_view>
@@ -28,8 +29,13 @@ class WavefrontText : private std::streambuf {
 
   /// Throws what the filter throws while it is read from.
   std::istream& stream() { return stream_; }
+  /// "file:line" of the statement that was handed out last.
+  std::string place() const;
+  std::size_t line() const noexcept { return line_; }
   /// "file:line: why", for the statement that was handed out last.
   Error error(std::string_view why) const;
+  /// The same for a statement further up.
+  Error error_at(std::size_t line, std::string_view why) const;
   const std::filesystem::path& path() const noexcept { return path_; }
 
  private:
@@ -60,5 +66,8 @@ std::string_view take_word(std::string_view& text);
 /// Whether `word` is a whole decimal number (or nan or inf), written as in C.
 bool parse_number(std::string_view word, double& value);
 bool parse_integer(std::string_view word, int& value);
+
+/// "a, b, c, d and 5 more", as names are shown in sentences.
+std::string abbreviated(std::span<const std::string> names);
 
 }  // namespace tandem::pathtracer

@@ -48,7 +48,7 @@ TEST_CASE("What is wrong with a description is said in one sentence that names t
   CHECK(error_of("{\"title\": 3}") == "title must be a text");
   CHECK(error_of(R"({"title": "a", "title": "b"})") == "an object has two members named title");
   CHECK(error_of("{" + grey + R"(, "spheres": [{"centre": [0, 0, 0], "radius": -1, "material": "grey"}]})") ==
-        "spheres[0].radius must be a positive number");
+        "spheres[0].radius must be a number from 1.18e-38 to 1e+12");
   CHECK(error_of("{" + grey + R"(, "spheres": [{"centre": [0, 0], "radius": 1, "material": "grey"}]})") ==
         "spheres[0].centre must be a list of 3");
   CHECK(error_of("{" + grey + R"(, "spheres": [{"centre": [0, 0, 0], "radius": 1, "material": "gray"}]})") ==

@@ -1,6 +1,7 @@
 #include "pathtracer/load/obj/mtl_loader.hpp"
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "base/error.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -19,6 +20,9 @@ Loaded load(std::string_view text) {
   const ScratchFolder folder;
   Loaded loaded;
   loaded.materials = load_mtl(folder.write("test.mtl", text), loaded.warnings);
+  // As where a face has it.
+  for (const NamedMaterial& material : loaded.materials)
+    if (material.error) throw tandem::Error(*material.error);
   return loaded;
 }
 
@@ -212,4 +216,51 @@ TEST_CASE("What cannot be meant is an error that names the line") {
   CHECK(contains(error_of(""), "is empty"));
   CHECK(contains(error_of(std::string("newmtl a\0b", 10)), "is not a text"));
   CHECK(load("# nothing\n").materials.empty());
+}
+
+TEST_CASE("A value out of range is a warning where the material does not need it") {
+  const char* const cases[] = {"Ns -1.960784\nillum 1\n",
+                               "Ns nan\nKs 0 0 0\nillum 2\n",
+                               "Ni -1\n",
+                               "Ni x\nillum 2\nKs 0.1 0.1 0.1\nNs 5\n",
+                               "Ks -1 0 0\nillum 1\n",
+                               "Tf 1e40 1 1\n",
+                               "Tr -1\nd 1\n",
+                               "Tf nan nan nan\nillum 3\nKs 1 1 1\nKd -1 -1 -1\n",
+                               "d 2\nKd x\nKs -1 0 0\nNs -5\nNi 1.5\nillum 7\n"};
+  for (const char* text : cases) {
+    CAPTURE(text);
+    const Loaded loaded = load("newmtl m\n" + std::string(text));
+    REQUIRE(loaded.warnings.size() == 1);
+    CHECK(contains(loaded.warnings[0], "cannot be used are ignored"));
+    CHECK(contains(loaded.warnings[0], " of m"));
+  }
+  // The same values where they count.
+  for (const char* text : {"Ns -1.960784\nKs 0.1 0.1 0.1\nillum 2\n", "Ni -1\nillum 7\n", "Ks -1 0 0\nillum 3\n",
+                           "Tf 1e40 1 1\nillum 4\n", "Tr -1\n", "Kd -1 -1 -1\n", "d 2\nd 1\nd 2\n"})
+    CHECK(contains(error_of("newmtl m\n" + std::string(text)), "test.mtl:"));
+  CHECK(load("newmtl m\nd 2\nd 1\n").warnings.empty());  // the last one counts
+  CHECK(load("newmtl m\nNs -1.960784\nKd 0.3 0.5 0.7\nKs 0 0 0\nd 1\nillum 1\n").materials[0].material.base_color ==
+        glm::vec3(0.3f, 0.5f, 0.7f));
+}
+
+TEST_CASE("A material that cannot be used is an error of its own, and the others are read") {
+  const ScratchFolder folder;
+  std::vector<std::string> warnings;
+  const auto materials =
+      load_mtl(folder.write("test.mtl", "newmtl a\nKd 1 0 0\nnewmtl b\nKd -1 0 0\nnewmtl c\nillum 11\n"), warnings);
+  REQUIRE(materials.size() == 3);
+  CHECK_FALSE(materials[0].error);
+  CHECK(contains(materials[1].error.value_or(""), "test.mtl:4: Kd"));
+  CHECK(contains(materials[2].error.value_or(""), "test.mtl:6: illum"));
+}
+
+TEST_CASE("Names from a file are escaped and cut in warnings") {
+  std::string text;
+  for (int i = 0; i < 10; ++i) text += fmt::format("newmtl {}\x1b[31m{}\nd 0\n", std::string(10000, 'x'), i);
+  const Loaded loaded = load(text);
+  REQUIRE(loaded.warnings.size() == 1);
+  CHECK(loaded.warnings[0].size() < 1000);
+  CHECK(contains(loaded.warnings[0], "\\x1b[31m0, "));
+  CHECK(contains(loaded.warnings[0], "and 6 more"));
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "base/error.hpp"
@@ -157,10 +158,10 @@ TEST_CASE("What cannot be meant is one sentence with file and line") {
   CHECK(contains(error_of("v 0 0 0\nv 0 1,5 0\nv 0 1 0\nf 1 2 3\n"), "'1,5'"));
   CHECK(contains(error_of(square + "f 1 2 5\n"), "test.obj:5: the vertex index 5 is out of range: there are 4"));
   CHECK(contains(error_of(square + "f 1 2 -5\n"), "index -5 is out of range"));
-  CHECK(contains(error_of(square + "f 1//1 2//1 3//1\n"), "normal index 1 is out of range"));
   CHECK(contains(error_of(square + "f 0 1 2\n"), "'0' is not a corner"));
   CHECK(contains(error_of(square + "f 1 2 99999999999\n"), "'99999999999' is not a corner"));
-  CHECK(contains(error_of(square + "f 1/ 2 3\n"), "'1/' is not a corner"));
+  for (const char* corner : {"1///", "1/1/1/", "/1", "//1", "/", "1/x", "1/0", "1//0", "1/1/x", "1/ /"})
+    CHECK(contains(error_of(square + "f 2 3 " + corner + "\n"), "is not a corner"));
   CHECK(contains(error_of(square + "f 1 2 x\n"), "'x' is not a corner"));
   CHECK(contains(error_of(square + "f 1 2\n"), "fewer than three corners"));
   CHECK(contains(error_of(square), "holds no triangles"));
@@ -187,11 +188,91 @@ TEST_CASE("A file without end is refused when its first bytes are no text") {
 TEST_CASE("A file that is cut off is an error where it shows") {
   CHECK(contains(error_of(square + "f 1 2 3\nv 1.0 2."), "test.obj:6: a vertex has fewer"));
   CHECK(contains(error_of(square + "f 1 2 3\nf 1 2"), "test.obj:6: a face has fewer"));
-  CHECK(contains(error_of(square + "f 1 2 3\nf 1//"), "'1//' is not a corner"));
+  CHECK(contains(error_of(square + "f 1 2 3\nf 1//"), "test.obj:6: a face has fewer"));
 }
 
 TEST_CASE("A missing file and a folder are errors") {
   const ScratchFolder folder;
   CHECK_THROWS_AS(load_obj(folder.path() / "absent.obj"), tandem::Error);
   CHECK_THROWS_AS(load_obj(folder.path()), tandem::Error);
+}
+
+TEST_CASE("Corners may end in slashes with nothing behind") {
+  for (const char* face : {"f 1/ 2/ 3/ 4/\n", "f 1// 2// 3// 4//\n", "f 1/1/ 2/2/ 3/3/ 4/4/\n", "f 1// 2/2/ 3//1 4\n",
+                           "f -4// -3// -2/ -1// # comment\n"}) {
+    const Scene scene = load(square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\n" + face);
+    CAPTURE(face);
+    CHECK(total_area(scene) == doctest::Approx(1));
+    CHECK(scene.warnings.empty());
+  }
+  // What stands before the last slash is kept.
+  const Scene scene =
+      load("mtllib test.mtl\nusemtl m\n" + square + "vt 0.5 0.25\nf 1/1/ 2/-1/ 3/1/\n", "newmtl m\nKd 0.1 0.2 0.3\n");
+  CHECK(scene.materials[material_index(scene.triangles[0])].base_color == glm::vec3(0.1f, 0.2f, 0.3f));
+}
+
+TEST_CASE("Normals that the file does not have make triangles flat, with one warning") {
+  const Scene scene = load(square + "vn 1 0 1\nf 1//1 2//2 3//-7\nf 1//5 3//6 4//7\nf 1//1 2//1 3//1\n");
+  REQUIRE(scene.triangles.size() == 3);
+  CHECK_FALSE(is_smooth(scene.triangles[0]));
+  CHECK_FALSE(is_smooth(scene.triangles[1]));
+  CHECK(is_smooth(scene.triangles[2]));
+  REQUIRE(scene.warnings.size() == 1);
+  CHECK(contains(scene.warnings[0], "5 corners name normals that the file does not have"));
+}
+
+TEST_CASE("A vertex that no face uses may be wrong, with one warning; a face that uses it is an error of its line") {
+  for (const char* vertex : {"nan nan nan", "0 inf 0", "0 0 1e400", "0 -2e12 0", "1.#QNAN 0 0", "-nan(ind) 0 0"}) {
+    const std::string text = square + "v " + vertex + "\nv 1 2 x\nf 1 2 3 4\n";
+    CAPTURE(text);
+    const Scene scene = load(text);
+    CHECK(total_area(scene) == doctest::Approx(1));
+    CHECK(bounds(scene).maximum == glm::vec3(1, 1, 0));
+    REQUIRE(scene.warnings.size() == 1);
+    CHECK(contains(scene.warnings[0], "2 vertices cannot be used, and no face does"));
+    CHECK(contains(error_of(text + "f 1 2 5\n"), "test.obj:5: the vertex coordinate"));
+    CHECK(contains(error_of(text + "f 1 2 -1\n"), "test.obj:6: the vertex coordinate 'x'"));
+  }
+}
+
+TEST_CASE("Statements may come in any order") {
+  const std::string mtl = "newmtl red\nKd 0.8 0.1 0.1\nnewmtl green\nKd 0 1 0\n";
+  const Scene late = load(square + "usemtl red\nf 1 2 3\nusemtl green\nf 1 3 4\nmtllib test.mtl\n", mtl);
+  CHECK(late.warnings.empty());
+  CHECK(late.materials[material_index(late.triangles[0])].base_color == glm::vec3(0.8f, 0.1f, 0.1f));
+  CHECK(late.materials[material_index(late.triangles[1])].base_color == glm::vec3(0, 1, 0));
+  // Elements behind the faces that use them.
+  const Scene scene = load("f 1//1 2//2 3//1\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 1 0 1\n");
+  CHECK(is_smooth(scene.triangles[0]));
+  CHECK(scene.warnings.empty());
+  CHECK(contains(error_of("f 1 2 4\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"), "test.obj:1: the vertex index 4"));
+  // Relative indices count what stands above.
+  CHECK(contains(error_of("f -3 -2 -1\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"), "index -3 is out of range"));
+}
+
+TEST_CASE("A material that no face uses may be wrong, and its textures are not read") {
+  const std::string text = "mtllib test.mtl\n" + square + "usemtl good\nf 1 2 3\nusemtl bad\n";
+  const Scene scene = load(text, "newmtl bad\nKd -1 0 0\nnewmtl good\nKd 1 0 0\nnewmtl other\nmap_Kd absent.png\n");
+  CHECK(scene.materials[material_index(scene.triangles[0])].base_color == glm::vec3(1, 0, 0));
+  REQUIRE(scene.warnings.size() == 1);
+  CHECK(contains(scene.warnings[0], "materials that no face uses are ignored, since they have values that cannot"));
+  CHECK(contains(scene.warnings[0], ": bad"));
+  CHECK(contains(error_of(text + "f 1 3 4\n", "newmtl bad\nKd -1 0 0\nnewmtl good\n"), "test.mtl:2: Kd"));
+  CHECK(contains(error_of(text, "newmtl good\nmap_Kd absent.png\n"), "test.obj:1: the texture"));
+}
+
+TEST_CASE("A polygon of many corners is read, and names in sentences are escaped and cut") {
+  constexpr int count = 20000;
+  std::string text, face = "f";
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2 * 3.14159265358979 * i / count;
+    text += fmt::format("v {} {} 0\n", std::cos(angle), std::sin(angle));
+    face += fmt::format(" {}", i + 1);
+  }
+  const Scene scene = load(text + face + "\n");
+  CHECK(scene.triangles.size() == count - 2);
+  CHECK(total_area(scene) == doctest::Approx(3.14159265358979).epsilon(1e-5));
+  const std::string sentence = error_of(square + "f 1 2 " + std::string(100000, 'x') + "\x1b\n");
+  CHECK(sentence.size() < 400);
+  CHECK(contains(sentence, "\\x1b' is not a corner"));
 }
