@@ -1,5 +1,8 @@
 // The module that image_codec_on_demand.cpp opens.
+#include <array>
+#include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <string_view>
 
@@ -7,7 +10,10 @@
 #include <OpenImageIO/imageio.h>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "pathtracer/image/image_codec_module.hpp"
+#include "pathtracer/image/image_limits.hpp"
+#include "pathtracer/image/png_reader.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -53,19 +59,18 @@ StoredType stored_type(OIIO::TypeDesc type) {
   return type == OIIO::TypeDesc::HALF ? StoredType::half : StoredType::float32;
 }
 
-DecodedImage decode(OIIO::ImageInput& input) {
+DecodedImage decode(OIIO::ImageInput& input, std::uint64_t file_bytes) {
   const OIIO::ImageSpec spec = input.spec();
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) throw Error("it is empty");
+  check_image_size(static_cast<std::uint64_t>(spec.width), static_cast<std::uint64_t>(spec.height),
+                   static_cast<std::uint64_t>(spec.nchannels), file_bytes);
   DecodedImage image{.width = static_cast<std::uint32_t>(spec.width),
                      .height = static_cast<std::uint32_t>(spec.height),
                      .channels = static_cast<std::uint32_t>(spec.nchannels),
                      .values = {},
                      .type = stored_type(spec.format),
-                     .is_png = std::string_view(input.format_name()) == "png",
+                     .is_png = false,
                      .attributes = {}};
-  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 ||
-      std::uint64_t{image.width} * image.height > most_image_values / image.channels)
-    throw Error("its size of " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + " with " +
-                std::to_string(spec.nchannels) + " channels is not between 1 and 2^30 values");
   image.values.resize(std::size_t{image.width} * image.height * image.channels);
   if (!input.read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.values.data()))
     throw Error(input.geterror());
@@ -95,21 +100,53 @@ std::vector<std::byte> png_file(std::uint32_t width, std::uint32_t height, std::
   return encode("png", spec, rgb.data(), "sRGB", attributes);
 }
 
-DecodedImage decode_path(const std::filesystem::path& path) {
-  const OIIO::ImageSpec config = reading_config();
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &config);
-  if (!input) throw Error(OIIO::geterror());
-  return decode(*input);
+/// What a reader throws of its own are accidents inside, such as a list of more elements than there can be.
+template <typename Decode>
+DecodedImage guarded(const Decode& decode) {
+  try {
+    return decode();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error("it does not fit into memory");
+  } catch (const std::exception&) {
+    throw Error("its contents are not those of a picture");
+  }
+}
+
+std::string reason(const std::string& reported) {
+  return reported.empty() ? "its contents are not those of a picture" : reported;
 }
 
 DecodedImage decode_bytes(std::span<const std::byte> file) {
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());  // which only reads
-  OIIO::Filesystem::IOProxy* proxy = &memory;  // named twice: some readers forget the argument where there is a config
-  OIIO::ImageSpec config = reading_config();
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name_of_format(file), &config, proxy);
-  if (!input) throw Error(OIIO::geterror());
-  return decode(*input);
+  if (is_png(file)) return guarded([&] { return decode_png(file); });
+  const std::string name = name_of_format(file);
+  return guarded([&] {
+    OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(file.data()), file.size());  // which only reads
+    OIIO::Filesystem::IOProxy* proxy =
+        &memory;  // named twice: some readers forget the argument where there is a config
+    OIIO::ImageSpec config = reading_config();
+    config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(name, &config, proxy);
+    if (!input) throw Error(reason(OIIO::geterror()));
+    return decode(*input, file.size());
+  });
+}
+
+DecodedImage decode_path(const std::filesystem::path& path) {
+  InputFile file(path);
+  std::array<char, 8> signature{};
+  const std::size_t count = file.read(signature);
+  if (is_png(std::as_bytes(std::span(signature)).first(count))) {
+    const std::string bytes = read_bytes(path, most_image_file_bytes);
+    return decode_bytes(std::as_bytes(std::span(bytes)));
+  }
+  return guarded([&] {
+    const OIIO::ImageSpec config = reading_config();
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(path.string(), &config);
+    if (!input) throw Error(reason(OIIO::geterror()));
+    return decode(*input, file.size());
+  });
 }
 
 }  // namespace

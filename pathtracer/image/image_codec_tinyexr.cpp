@@ -2,8 +2,6 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -12,7 +10,10 @@
 #include <tinyexr.h>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "pathtracer/image/image_codec.hpp"
+#include "pathtracer/image/image_limits.hpp"
+#include "pathtracer/image/png_reader.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -77,6 +78,11 @@ DecodedImage decode_exr(std::span<const std::byte> file) {
   const auto is_half = [](int type) { return type == TINYEXR_PIXELTYPE_HALF; };
   const bool all_half =
       std::all_of(header.value.pixel_types, header.value.pixel_types + header.value.num_channels, is_half);
+  const EXRBox2i& window = header.value.data_window;
+  if (window.max_x < window.min_x || window.max_y < window.min_y) throw Error("its window is empty");
+  check_image_size(static_cast<std::uint64_t>(std::int64_t{window.max_x} - window.min_x + 1),
+                   static_cast<std::uint64_t>(std::int64_t{window.max_y} - window.min_y + 1),
+                   static_cast<std::uint64_t>(header.value.num_channels), file.size());
   for (int i = 0; i < header.value.num_channels; ++i) header.value.requested_pixel_types[i] = TINYEXR_PIXELTYPE_FLOAT;
   ExrImage loaded;
   if (LoadEXRImageFromMemory(&loaded.value, &header.value, bytes, file.size(), why.out()) != TINYEXR_SUCCESS)
@@ -105,8 +111,7 @@ DecodedImage decode_exr(std::span<const std::byte> file) {
   return image;
 }
 
-/// libpng reports an error by a function that must not return; the reason travels in an exception through C code, which
-/// libpng is compiled to allow.
+/// As png_reader.cpp does.
 [[noreturn]] void throw_png_error(png_structp, png_const_charp message) { throw Error(message); }
 void ignore_png_warning(png_structp, png_const_charp) {}
 
@@ -120,63 +125,10 @@ struct PngWriter {
   ~PngWriter() { png_destroy_write_struct(&png, &info); }
 };
 
-struct PngReader {
-  png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, &throw_png_error, &ignore_png_warning);
-  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
-
-  PngReader() = default;
-  PngReader(const PngReader&) = delete;
-  PngReader& operator=(const PngReader&) = delete;
-  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
-};
-
 void append_bytes(png_structp png, png_bytep bytes, std::size_t count) {
   auto& file = *static_cast<std::vector<std::byte>*>(png_get_io_ptr(png));
   const auto* first = reinterpret_cast<const std::byte*>(bytes);
   file.insert(file.end(), first, first + count);
-}
-
-void take_bytes(png_structp png, png_bytep bytes, std::size_t count) {
-  auto& rest = *static_cast<std::span<const std::byte>*>(png_get_io_ptr(png));
-  if (count > rest.size()) png_error(png, "the file ends too early");
-  std::memcpy(bytes, rest.data(), count);
-  rest = rest.subspan(count);
-}
-
-DecodedImage decode_png(std::span<const std::byte> file) {
-  PngReader reader;
-  if (reader.info == nullptr) throw Error("libpng has no memory");
-  png_set_read_fn(reader.png, &file, &take_bytes);
-  png_read_info(reader.png, reader.info);
-  png_set_expand(reader.png);  // palettes and few bits become 8 bits, transparent colours alpha
-  png_set_swap(reader.png);    // 16 bits in this machine's order
-  png_set_interlace_handling(reader.png);
-  png_read_update_info(reader.png, reader.info);
-  DecodedImage image;
-  image.width = png_get_image_width(reader.png, reader.info);
-  image.height = png_get_image_height(reader.png, reader.info);
-  image.channels = png_get_channels(reader.png, reader.info);
-  image.is_png = true;
-  if (std::uint64_t{image.width} * image.height > most_image_values / image.channels)
-    throw Error("it has more than 2^30 values");
-  const bool wide = png_get_bit_depth(reader.png, reader.info) == 16;
-  image.type = wide ? StoredType::unorm16 : StoredType::unorm8;
-  const std::size_t row_bytes = png_get_rowbytes(reader.png, reader.info);
-  std::vector<png_byte> bytes(row_bytes * image.height);
-  std::vector<png_bytep> rows;
-  for (std::size_t y = 0; y < image.height; ++y) rows.push_back(bytes.data() + y * row_bytes);
-  png_read_image(reader.png, rows.data());
-  png_read_end(reader.png, reader.info);
-  image.values.reserve(std::size_t{image.width} * image.height * image.channels);
-  for (std::size_t i = 0; i < bytes.size(); i += wide ? 2 : 1) {
-    std::uint16_t value = bytes[i];
-    if (wide) std::memcpy(&value, bytes.data() + i, sizeof(value));
-    image.values.push_back(static_cast<float>(value) / (wide ? 65535.0f : 255.0f));
-  }
-  png_textp texts = nullptr;
-  const int count = png_get_text(reader.png, reader.info, &texts, nullptr);
-  for (int i = 0; i < count; ++i) image.attributes.emplace(texts[i].key, texts[i].text);
-  return image;
 }
 
 }  // namespace
@@ -262,17 +214,12 @@ std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height, std
 }
 
 DecodedImage decode_image(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw Error("the file cannot be opened");
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  return decode_image(std::as_bytes(std::span(text)));
+  const std::string file = read_bytes(path, most_image_file_bytes);
+  return decode_image(std::as_bytes(std::span(file)));
 }
 
 DecodedImage decode_image(std::span<const std::byte> file) {
-  constexpr std::size_t signature_size = 8;
-  const auto* signature = reinterpret_cast<png_const_bytep>(file.data());
-  if (file.size() >= signature_size && png_sig_cmp(signature, 0, signature_size) == 0) return decode_png(file);
-  return decode_exr(file);
+  return is_png(file) ? decode_png(file) : decode_exr(file);
 }
 
 }  // namespace tandem::pathtracer

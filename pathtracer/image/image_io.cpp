@@ -11,6 +11,8 @@
 
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
+#include "base/input_file.hpp"
+#include "base/printable.hpp"
 #include "base/srgb.hpp"
 #include "pathtracer/image/image_codec.hpp"
 
@@ -30,7 +32,7 @@ Format format_of(const std::filesystem::path& path) {
   throw Error("cannot write '" + path.string() + "': the file name must end in .exr or .png");
 }
 
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+std::string first_line(const std::string& text) { return shortened(text.substr(0, text.find('\n')), 300); }
 
 Error write_error(const std::filesystem::path& path, const std::string& why) {
   return Error("cannot write '" + path.string() + "': " + first_line(why));
@@ -94,6 +96,7 @@ Image read_image(const std::filesystem::path& path, ImageMetadata* metadata) {
   const auto fail = [&](const std::string& why) {
     return Error("cannot read '" + path.string() + "': " + first_line(why));
   };
+  check_input(path);
   DecodedImage decoded;
   try {
     decoded = decode_image(path);

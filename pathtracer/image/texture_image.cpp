@@ -10,6 +10,8 @@
 #include <glm/vec4.hpp>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
+#include "base/printable.hpp"
 #include "base/srgb.hpp"
 #include "pathtracer/image/image_codec.hpp"
 #include "pathtracer/scene/lights.hpp"
@@ -24,7 +26,7 @@ constexpr std::uint32_t largest_side = 1u << 15;
 template <typename Decode>
 DecodedImage decoded(const std::string& name, const Decode& decode) {
   const auto fail = [&](const std::string& why) {
-    return Error(fmt::format("cannot read the texture '{}': {}", name, why.substr(0, why.find('\n'))));
+    return Error(fmt::format("cannot read the texture '{}': {}", name, shortened(why.substr(0, why.find('\n')), 300)));
   };
   DecodedImage image;
   try {
@@ -123,6 +125,7 @@ TextureImage texture_image(const DecodedImage& image, const std::string& name, T
 }  // namespace
 
 TextureImage load_texture_image(const std::filesystem::path& path, TextureEncoding encoding) {
+  check_input(path);
   const DecodedImage image = decoded(path.string(), [&] { return decode_image(path); });
   return texture_image(image, path.filename().string(), encoding);
 }
@@ -132,6 +135,7 @@ TextureImage decode_texture_image(std::span<const std::byte> file, const std::st
 }
 
 TextureImage load_alpha_texture(const std::filesystem::path& path) {
+  check_input(path);
   const DecodedImage image = decoded(path.string(), [&] { return decode_image(path); });
   TextureImage texture{.name = path.filename().string(),
                        .format = TexelFormat::single_unorm8,
