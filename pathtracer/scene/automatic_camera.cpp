@@ -51,8 +51,8 @@ bool is_shell(const SceneProbe& probe, std::optional<Side>& open) {
 bool is_hollow(const SceneProbe& probe) {
   std::size_t faced = 0, all = 0;
   for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t v = 0; v < SceneProbe::resolution; ++v)
-      for (std::size_t u = 0; u < SceneProbe::resolution; ++u)
+    for (std::size_t v = 0; v < probe.resolution(); ++v)
+      for (std::size_t u = 0; u < probe.resolution(); ++u)
         if (const std::optional<Gap> gap = longest_gap(probe.line(axis, u, v), false)) {
           ++all;
           faced += gap->is_faced();
@@ -95,8 +95,8 @@ Camera inside_room(const SceneProbe& probe, bool hollow) {
   Camera camera{.position = centre, .target = centre, .up = {0, 1, 0}, .vertical_fov = inside_fov};
   float best = 0;
   for (const int axis : {2, 0})
-    for (std::size_t v = 0; v < SceneProbe::resolution; ++v)
-      for (std::size_t u = 0; u < SceneProbe::resolution; ++u) {
+    for (std::size_t v = 0; v < probe.resolution(); ++v)
+      for (std::size_t u = 0; u < probe.resolution(); ++u) {
         const std::optional<Gap> gap = longest_gap(probe.line(axis, u, v), hollow);
         if (!gap) continue;
         const glm::vec3 point = probe.line_point(axis, u, v);

@@ -16,8 +16,8 @@ struct LineRange {
   std::size_t last;
 };
 
-LineRange lines_between(double minimum, double maximum, double start, double extent) {
-  constexpr auto count = double(SceneProbe::resolution);
+LineRange lines_between(double minimum, double maximum, double start, double extent, std::size_t resolution) {
+  const auto count = double(resolution);
   const auto index = [&](double coordinate) {
     return std::clamp((coordinate - start) / extent * count - 0.5, -1.0, count);
   };
@@ -27,10 +27,48 @@ LineRange lines_between(double minimum, double maximum, double start, double ext
 
 }  // namespace
 
-SceneProbe::SceneProbe(const Scene& scene) : bounds_(pathtracer::bounds(scene)) {
+/// The triangle seen along an axis, and the lines that its bounds meet.
+struct SceneProbe::Extent {
+  std::array<glm::dvec2, 3> corners;
+  LineRange across;
+  LineRange along;
+};
+
+SceneProbe::Extent SceneProbe::extent_of(const Scene& scene, const GpuTriangle& triangle, int axis) const {
+  const int axis_u = (axis + 1) % 3;
+  const int axis_v = (axis + 2) % 3;
+  std::array<glm::dvec2, 3> corners;
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec3& p = scene.positions[triangle.vertices[i]];
+    corners[i] = {p[axis_u], p[axis_v]};
+  }
+  const glm::vec3 extent = bounds_.extent();
+  const auto [min_u, max_u] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
+  const auto [min_v, max_v] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
+  return {corners, lines_between(min_u, max_u, bounds_.minimum[axis_u], extent[axis_u], resolution_),
+          lines_between(min_v, max_v, bounds_.minimum[axis_v], extent[axis_v], resolution_)};
+}
+
+std::uint64_t SceneProbe::meetings(const Scene& scene) const {
+  const glm::vec3 extent = bounds_.extent();
+  std::uint64_t count = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(extent[(axis + 1) % 3] > 0 && extent[(axis + 2) % 3] > 0)) continue;
+    for (const GpuTriangle& triangle : scene.triangles) {
+      const Extent lines = extent_of(scene, triangle, axis);
+      if (lines.across.last > lines.across.first && lines.along.last > lines.along.first)
+        count += (lines.across.last - lines.across.first) * (lines.along.last - lines.along.first);
+    }
+  }
+  return count;
+}
+
+SceneProbe::SceneProbe(const Scene& scene, std::uint64_t most_meetings) : bounds_(pathtracer::bounds(scene)) {
+  constexpr std::size_t coarsest_resolution = 3;
+  while (resolution_ > coarsest_resolution && meetings(scene) > most_meetings) resolution_ /= 2;
   const glm::vec3 extent = bounds_.extent();
   for (int axis = 0; axis < 3; ++axis) {
-    lines_[axis].resize(resolution * resolution);
+    lines_[axis].resize(resolution_ * resolution_);
     if (!(extent[(axis + 1) % 3] > 0 && extent[(axis + 2) % 3] > 0)) continue;
     for (const GpuTriangle& triangle : scene.triangles) add(scene, triangle, axis);
     for (std::vector<LineHit>& hits : lines_[axis])
@@ -42,18 +80,9 @@ SceneProbe::SceneProbe(const Scene& scene) : bounds_(pathtracer::bounds(scene)) 
 void SceneProbe::add(const Scene& scene, const GpuTriangle& triangle, int axis) {
   const int axis_u = (axis + 1) % 3;
   const int axis_v = (axis + 2) % 3;
-  std::array<glm::dvec2, 3> corners;
-  for (int i = 0; i < 3; ++i) {
-    const glm::vec3& p = scene.positions[triangle.vertices[i]];
-    corners[i] = {p[axis_u], p[axis_v]};
-  }
+  const auto [corners, across, along] = extent_of(scene, triangle, axis);
   const double area = cross(corners[1] - corners[0], corners[2] - corners[0]);
   if (area == 0) return;
-  const glm::vec3 extent = bounds_.extent();
-  const auto [min_u, max_u] = std::minmax({corners[0].x, corners[1].x, corners[2].x});
-  const auto [min_v, max_v] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
-  const LineRange across = lines_between(min_u, max_u, bounds_.minimum[axis_u], extent[axis_u]);
-  const LineRange along = lines_between(min_v, max_v, bounds_.minimum[axis_v], extent[axis_v]);
   for (std::size_t v = along.first; v < along.last; ++v)
     for (std::size_t u = across.first; u < across.last; ++u) {
       const glm::vec3 point = line_point(axis, u, v);
@@ -64,12 +93,12 @@ void SceneProbe::add(const Scene& scene, const GpuTriangle& triangle, int axis) 
       if (*std::min_element(weights.begin(), weights.end()) < 0) continue;
       double coordinate = 0;
       for (int i = 0; i < 3; ++i) coordinate += weights[i] * double{scene.positions[triangle.vertices[i]][axis]};
-      lines_[axis][v * resolution + u].push_back({static_cast<float>(coordinate), area > 0});
+      lines_[axis][v * resolution_ + u].push_back({static_cast<float>(coordinate), area > 0});
     }
 }
 
 const std::vector<LineHit>& SceneProbe::line(int axis, std::size_t u, std::size_t v) const {
-  return lines_[axis][v * resolution + u];
+  return lines_[axis][v * resolution_ + u];
 }
 
 glm::vec3 SceneProbe::line_point(int axis, std::size_t u, std::size_t v) const {
@@ -77,8 +106,10 @@ glm::vec3 SceneProbe::line_point(int axis, std::size_t u, std::size_t v) const {
   glm::vec3 point = bounds_.centre();
   const int axis_u = (axis + 1) % 3;
   const int axis_v = (axis + 2) % 3;
-  point[axis_u] = bounds_.minimum[axis_u] + extent[axis_u] * (static_cast<float>(u) + 0.5f) / float{resolution};
-  point[axis_v] = bounds_.minimum[axis_v] + extent[axis_v] * (static_cast<float>(v) + 0.5f) / float{resolution};
+  point[axis_u] =
+      bounds_.minimum[axis_u] + extent[axis_u] * (static_cast<float>(u) + 0.5f) / static_cast<float>(resolution_);
+  point[axis_v] =
+      bounds_.minimum[axis_v] + extent[axis_v] * (static_cast<float>(v) + 0.5f) / static_cast<float>(resolution_);
   return point;
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -19,9 +20,15 @@ struct LineHit {
 /// answers questions about the shape of a scene without an acceleration structure, in one pass over the triangles.
 class SceneProbe {
  public:
-  static constexpr std::size_t resolution = 24;
+  static constexpr std::size_t finest_resolution = 24;
+  /// Triangles and lines that may meet: beyond, there are fewer lines, so that a scene of many large triangles takes no
+  /// more memory and time than one of many small ones.
+  static constexpr std::uint64_t usual_meetings = std::uint64_t{1} << 24;
 
-  explicit SceneProbe(const Scene& scene);
+  explicit SceneProbe(const Scene& scene, std::uint64_t most_meetings = usual_meetings);
+
+  /// Lines along a side of the grid: 24, or 12, 6 or 3 where most triangles are as large as the scene.
+  std::size_t resolution() const noexcept { return resolution_; }
 
   const Bounds& bounds() const noexcept { return bounds_; }
   /// The hits of one line by ascending coordinate. `u` and `v` count along the axes after `axis`, cyclically.
@@ -32,9 +39,13 @@ class SceneProbe {
   float closed_fraction(int axis, bool upper_side) const;
 
  private:
+  struct Extent;
+  Extent extent_of(const Scene& scene, const GpuTriangle& triangle, int axis) const;
+  std::uint64_t meetings(const Scene& scene) const;
   void add(const Scene& scene, const GpuTriangle& triangle, int axis);
 
   Bounds bounds_;
+  std::size_t resolution_ = finest_resolution;
   std::array<std::vector<std::vector<LineHit>>, 3> lines_;
 };
 

@@ -1,15 +1,17 @@
 #include "rhi/glsl/compile.hpp"
 
-#include <fstream>
-#include <iterator>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <sstream>
+#include <utility>
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
+#include "base/error.hpp"
+#include "base/input_file.hpp"
 #include "rhi/error.hpp"
 
 namespace tandem::glsl {
@@ -44,20 +46,38 @@ EShLanguage language_of(rhi::ShaderStage stage) {
   return EShLangCompute;
 }
 
+/// Files in files: a file that includes itself without a guard has no end.
+constexpr std::size_t deepest_include = 64;
+/// Files, and bytes of them, that a shader is made of: each may include two others, each of which two more.
+constexpr std::size_t most_includes = 10000;
+constexpr std::size_t most_included_bytes = std::size_t{64} << 20;
+
 /// Resolves #include "file" against the including file's folder, then the folders of the options.
 class FileIncluder : public glslang::TShader::Includer {
  public:
   explicit FileIncluder(const CompileOptions& options) : options_(options) {}
 
-  IncludeResult* includeLocal(const char* header, const char* includer, size_t /*depth*/) override {
+  IncludeResult* includeLocal(const char* header, const char* includer, size_t depth) override {
+    if (!refusal_.empty()) return nullptr;
     std::vector<std::filesystem::path> folders = {std::filesystem::path(includer).parent_path()};
     folders.insert(folders.end(), options_.include_directories.begin(), options_.include_directories.end());
     for (const std::filesystem::path& folder : folders) {
       const std::filesystem::path path = folder / header;
-      std::ifstream file(path, std::ios::binary);
-      if (!file) continue;
+      std::error_code status_error;
+      if (!std::filesystem::exists(path, status_error)) continue;
+      if (depth > deepest_include)
+        return refuse(path.string().append(": it is included by files in files, more than ") +
+                      std::to_string(deepest_include) + " deep; it may include itself");
       auto included = std::make_unique<Included>();
-      included->text.assign(std::istreambuf_iterator<char>(file), {});
+      try {
+        included->text = read_bytes(path, most_included_bytes);
+      } catch (const tandem::Error& error) {
+        return refuse(error.what());
+      }
+      bytes_ += included->text.size();
+      if (included_.size() >= most_includes || bytes_ > most_included_bytes)
+        return refuse(std::to_string(most_includes).append(" files or ") + std::to_string(most_included_bytes >> 20) +
+                      " MiB of them are the most that a shader may include");
       included->result =
           std::make_unique<IncludeResult>(path.string(), included->text.data(), included->text.size(), nullptr);
       included_.push_back(std::move(included));
@@ -69,14 +89,25 @@ class FileIncluder : public glslang::TShader::Includer {
   IncludeResult* includeSystem(const char*, const char*, size_t) override { return nullptr; }
   void releaseInclude(IncludeResult*) override {}  // they live as long as the includer
 
+  /// Why a file that is there was not included; "" when none was refused.
+  const std::string& refusal() const { return refusal_; }
+
  private:
   struct Included {
     std::string text;
     std::unique_ptr<IncludeResult> result;
   };
 
+  /// The compiler's own sentence would be that the file is not there.
+  IncludeResult* refuse(std::string why) {
+    refusal_ = std::move(why);
+    return nullptr;
+  }
+
   const CompileOptions& options_;
   std::vector<std::unique_ptr<Included>> included_;
+  std::size_t bytes_ = 0;
+  std::string refusal_;
 };
 
 std::string first_error(const std::string& log) {
@@ -110,7 +141,9 @@ std::vector<std::uint32_t> compile(std::string_view source, rhi::ShaderStage sta
                                               (options.debug_info ? EShMsgDebugInfo : EShMsgDefault));
   constexpr int default_version = 460;
   FileIncluder includer(options);
-  if (!shader.parse(GetDefaultResources(), default_version, false, rules, includer)) fail(name, shader.getInfoLog());
+  const bool parsed = shader.parse(GetDefaultResources(), default_version, false, rules, includer);
+  if (!includer.refusal().empty()) fail(name, includer.refusal());
+  if (!parsed) fail(name, shader.getInfoLog());
   glslang::TProgram program;
   program.addShader(&shader);
   if (!program.link(rules)) fail(name, program.getInfoLog());

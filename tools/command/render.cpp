@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -38,6 +40,13 @@ int render_image(const Options& options) {
   pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
   const compare::Rendering rendering = compare::render(renderer, job.samples, progress_bars());
   print_warnings(rendering.warnings);
+  const auto is_finite = [](const glm::vec3& pixel) {
+    return std::isfinite(pixel.x) && std::isfinite(pixel.y) && std::isfinite(pixel.z);
+  };
+  const std::size_t pixels = rendering.image.pixels.size();
+  const auto finite = static_cast<std::size_t>(std::ranges::count_if(rendering.image.pixels, is_finite));
+  if (finite < pixels)
+    print_warnings({fmt::format("{} of {} pixels are not finite numbers (NaN or infinity)", pixels - finite, pixels)});
   std::vector<pathtracer::ImageChannel> layers;
   if (options.layers) layers = pathtracer::first_hits(renderer.scene(), job.samples);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {

@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
-#include "base/text_file.hpp"
+#include "base/json_value.hpp"
+#include "base/printable.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "tools/report/comparison_report.hpp"
 #include "tools/report/device_json.hpp"
@@ -24,7 +25,7 @@ Json without_names(Json settings) {
   return settings;
 }
 
-std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+std::string text(const Json& value) { return shortened(value.is_string() ? value.get<std::string>() : value.dump()); }
 
 BaselineSide compare_side(const pathtracer::Image& before, const Json& milliseconds, const compare::Rendering& now,
                           const compare::Thresholds& thresholds) {
@@ -41,7 +42,7 @@ BaselineSide compare_side(const pathtracer::Image& before, const Json& milliseco
 StoredRun read_stored_run(const std::filesystem::path& folder) {
   StoredRun run{.folder = folder, .a = {}, .b = {}, .report = {}};
   try {
-    run.report = Json::parse(read_text(folder / stored_report));
+    run.report = json::parse(folder / stored_report);
     // Whatever is read later.
     for (const char* key : {"settings", "device_a", "device_b"})
       if (!run.report.at(key).is_object()) throw Error(fmt::format("'{}' of {} is not an object", key, stored_report));
@@ -49,7 +50,7 @@ StoredRun read_stored_run(const std::filesystem::path& folder) {
     run.a = pathtracer::read_image(folder / "a.exr");
     run.b = pathtracer::read_image(folder / "b.exr");
   } catch (const Json::exception& error) {
-    refuse(folder, fmt::format("{}: {}", stored_report, error.what()));
+    refuse(folder, fmt::format("{}: {}", stored_report, json::library_sentence(error)));
   } catch (const Error& error) {
     refuse(folder, error.what());
   }

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "base/json_value.hpp"
+#include "base/printable.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/job_report.hpp"
 
@@ -37,7 +38,7 @@ std::vector<GalleryScene> read_gallery(const std::filesystem::path& path) {
     const Object object(value, {"file", "title", "samples"});
     GalleryScene scene;
     scene.file = path.parent_path() / object.require("file").text();
-    scene.name = scene.file.stem().string();
+    scene.name = printable(scene.file.stem().string());
     scene.title = object.require("title").text();
     object.read("samples", scene.samples, &Value::whole_number, 1u, 1u << 24);
     if (std::ranges::any_of(scenes, [&](const GalleryScene& other) { return other.name == scene.name; }))

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/json_value.hpp"
+#include "base/printable.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -104,7 +105,7 @@ std::vector<SuiteScene> read_scenes(const Json& root, const Value& list, const s
     scene.file = folder / file->text();
     if (!std::filesystem::exists(scene.file))
       file->fail(fmt::format("names '{}', which does not exist", scene.file.string()));
-    scene.name = name ? name->text() : scene.file.stem().string();
+    scene.name = printable(name ? name->text() : scene.file.stem().string());
     scenes.push_back(std::move(scene));
     ++index;
   }
@@ -133,7 +134,7 @@ std::vector<NamedSettings> read_settings(const Json& root, const std::optional<V
   for (std::size_t index = 0; const Value& value : list->elements()) {
     NamedSettings settings;
     for (const auto& [key, member] : value.members())
-      if (key == "name") settings.name = member.text();
+      if (key == "name") settings.name = printable(member.text());
     if (settings.name.empty()) value.fail("must have a name");
     settings.settings = root.at("settings").at(index);
     settings.settings.erase("name");

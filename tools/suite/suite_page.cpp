@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <span>
@@ -15,6 +13,7 @@
 #include <utility>
 
 #include "base/base64.hpp"
+#include "base/input_file.hpp"
 #include "compare/report/page_sources.hpp"
 #include "tools/output/xml_text.hpp"
 
@@ -35,8 +34,8 @@ tbody th { padding-top: .6rem; }
 )";
 
 std::string image(const std::filesystem::path& path, const std::string& words) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes(std::istreambuf_iterator<char>(file), {});
+  constexpr std::uint64_t most_bytes = 1u << 30;
+  const std::string bytes = read_bytes(path, most_bytes);
   return fmt::format("<img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", xml_text(words), xml_text(words),
                      base64(std::as_bytes(std::span(bytes))));
 }

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
 #include <new>
 #include <optional>
 #include <utility>
 
+#include "base/error.hpp"
+#include "base/text_file.hpp"
 #include "compare/image/difference.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "tools/options/job.hpp"
@@ -33,14 +34,21 @@ constexpr std::uint32_t largest_picture = 128;
 /// The result in the file of the folder, if it is there, whole, and one of this key.
 std::optional<Json> read_result(const std::filesystem::path& folder, const std::filesystem::path& path,
                                 const Json& key) {
-  std::ifstream file(folder / path);
-  if (!file) return std::nullopt;
-  const Json json = Json::parse(file, nullptr, false);
+  std::string text;
+  try {
+    text = read_text(folder / path);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+  const Json json = Json::parse(text, nullptr, false);
   // Through text, so that both have numbers as a file has them.
   if (!json.is_object() || json.value("key", Json()) != Json::parse(json_text(key))) return std::nullopt;
-  if (json.value("state", "") == "failed") return std::nullopt;
-  for (const char* file_key : {"picture", "difference", "page"})
-    if (json.contains(file_key) && !std::filesystem::exists(folder / json.value(file_key, ""))) return std::nullopt;
+  if (json.value("state", Json()) == "failed") return std::nullopt;
+  for (const char* file_key : {"picture", "difference", "page"}) {
+    if (!json.contains(file_key)) continue;
+    if (!json.at(file_key).is_string()) return std::nullopt;
+    if (!std::filesystem::exists(folder / json.at(file_key).get<std::string>())) return std::nullopt;
+  }
   return json;
 }
 

@@ -1,6 +1,7 @@
 #include "rhi/glsl/compile.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -80,4 +81,48 @@ TEST_CASE("includes are found in the folders of the options") {
   options.include_directories = {folder.path()};
   CHECK_FALSE(glsl::compile(source, rhi::ShaderStage::compute, "includes", options).empty());
   CHECK_THROWS_AS(glsl::compile(source, rhi::ShaderStage::compute, "includes"), rhi::Error);
+}
+
+TEST_CASE("files that include each other without end are refused") {
+  const test::ScratchFolder folder;
+  glsl::CompileOptions options;
+  options.include_directories = {folder.path()};
+  const auto error_of = [&](const std::string& file) -> std::string {
+    const std::string source = std::string("#version 460\n#extension GL_GOOGLE_include_directive : require\n")
+                                   .append("#include \"")
+                                   .append(file)
+                                   .append("\"\nlayout(local_size_x = 1) in;\nvoid main() {}\n");
+    try {
+      glsl::compile(source, rhi::ShaderStage::compute, "endless.comp", options);
+    } catch (const rhi::Error& error) {
+      CHECK(error.code() == rhi::ErrorCode::shader_compilation);
+      return error.what();
+    }
+    return "no error";
+  };
+  const auto include = [](const std::string& file) { return std::string("#include \"").append(file).append("\"\n"); };
+  const auto contains = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
+  folder.write("self.glsl", include("self.glsl"));
+  CHECK(contains(error_of("self.glsl"), "endless.comp: "));
+  CHECK(contains(error_of("self.glsl"), "self.glsl: it is included by files in files, more than 64 deep"));
+  folder.write("a.glsl", include("b.glsl"));
+  folder.write("b.glsl", include("a.glsl"));
+  CHECK(contains(error_of("a.glsl"), "more than 64 deep"));
+  // Not deep, but twice as many files in each step.
+  for (int i = 0; i < 20; ++i) {
+    const std::string next = include(std::to_string(i + 1) + ".glsl");
+    folder.write(std::to_string(i) + ".glsl", next + next);
+  }
+  folder.write("20.glsl", "\n");
+  CHECK(contains(error_of("0.glsl"), "10000 files or 64 MiB"));
+  CHECK(error_of("10.glsl") == "no error");
+  // With a guard a file may include itself.
+  folder.write("guarded.glsl",
+               std::string("#ifndef GUARD\n#define GUARD\n").append(include("guarded.glsl")).append("#endif\n"));
+  CHECK(error_of("guarded.glsl") == "no error");
+  CHECK(contains(error_of("absent.glsl"), "absent.glsl"));
+  REQUIRE(::mkfifo((folder.path() / "pipe.glsl").c_str(), 0600) == 0);
+  CHECK(contains(error_of("pipe.glsl"), "it is a pipe"));
+  std::filesystem::create_symlink("/dev/zero", folder.path() / "zero.glsl");
+  CHECK(contains(error_of("zero.glsl"), "it is a device"));
 }
