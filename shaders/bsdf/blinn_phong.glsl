@@ -9,8 +9,8 @@
 
 #include "bsdf/phong.glsl"
 
-/// wo and wi are above the surface.
-precise BsdfValue blinn_phong_value(vec3 base_color, vec3 reflectance, float exponent, vec3 wo, vec3 wi) {
+/// wo and wi are above the surface. `base`: factor on the diffuse part of the value.
+precise BsdfValue blinn_phong_value(vec3 base_color, float base, vec3 reflectance, float exponent, vec3 wo, vec3 wi) {
   float n = lobe_exponent(exponent);
   vec3 half_vector = det_normalize(wo + wi, vec3(0.0, 0.0, 1.0));
   float power = cosine_power(half_vector.z, n);
@@ -18,7 +18,7 @@ precise BsdfValue blinn_phong_value(vec3 base_color, vec3 reflectance, float exp
   precise float along = det_dot(wo, half_vector);
   float lobe_density = along > 1e-6 ? det_div(power_cosine_density(power, n), 4.0 * along) : 0.0;
   float diffuse = diffuse_probability(base_color, reflectance);
-  return BsdfValue(base_color * INV_PI + reflectance * (factor * power),
+  return BsdfValue(base_color * (INV_PI * base) + reflectance * (factor * power),
                    diffuse * cosine_hemisphere_density(wi.z) + (1.0 - diffuse) * lobe_density);
 }
 

@@ -20,6 +20,7 @@ struct BsdfParameters {
   float exponent;
   float transmission;
   float specular;
+  bool glossy_only;  // the value is that of the glossy lobes alone; the density remains that of all
 };
 
 #endif

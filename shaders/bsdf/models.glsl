@@ -47,10 +47,11 @@ precise BsdfValue scattering_value(BsdfParameters parameters, vec3 wo, vec3 wi) 
   if (!(wo.z > SMALLEST_COSINE && abs(wi.z) > SMALLEST_COSINE)) return none;
   if (below && model != MATERIAL_ROUGH_DIELECTRIC && model != MATERIAL_PRINCIPLED) return none;
   if (model == MATERIAL_OREN_NAYAR) return oren_nayar_value(parameters.base_color, parameters.roughness, wo, wi);
+  float base = parameters.glossy_only ? 0.0 : 1.0;
   if (model == MATERIAL_PHONG)
-    return phong_value(parameters.base_color, parameters.reflectance, parameters.exponent, wo, wi);
+    return phong_value(parameters.base_color, base, parameters.reflectance, parameters.exponent, wo, wi);
   if (model == MATERIAL_BLINN_PHONG)
-    return blinn_phong_value(parameters.base_color, parameters.reflectance, parameters.exponent, wo, wi);
+    return blinn_phong_value(parameters.base_color, base, parameters.reflectance, parameters.exponent, wo, wi);
 
   float alpha = ggx_alpha(parameters.roughness);
   float eta = relative_index(parameters);
@@ -59,7 +60,9 @@ precise BsdfValue scattering_value(BsdfParameters parameters, vec3 wo, vec3 wi) 
   Facets facets = facets_between(alpha, wo, seen, seen.z < 0.0 ? eta : 1.0);
   if (model == MATERIAL_CONDUCTOR) return conductor_value(parameters, alpha, facets, wo, wi);
   if (model == MATERIAL_ROUGH_DIELECTRIC) return rough_dielectric_value(parameters.transmittance, eta, facets, wi);
-  return principled_value(principled_lobes(parameters, alpha, wo), alpha, facets, wi);
+  PrincipledLobes lobes = principled_lobes(parameters, alpha, wo);
+  if (parameters.glossy_only) lobes.diffuse = vec3(0.0);
+  return principled_value(lobes, alpha, facets, wi);
 }
 
 /// The BSDF and the solid-angle density of bsdf_sample at wi; both 0 where it has none. wi may be on either side.

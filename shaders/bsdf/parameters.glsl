@@ -47,6 +47,7 @@ precise BsdfParameters bsdf_parameters(uint material, bool outside, vec2 uv, vec
     parameters.exponent = materials[material].exponent;
     parameters.transmission = materials[material].transmission;
     parameters.specular = materials[material].specular;
+    parameters.glossy_only = false;
   }
   if (FEATURE_TEXTURES) {
     // A loop, so that the code that reads a texture is there once.

@@ -24,12 +24,12 @@ precise float diffuse_probability(vec3 base_color, vec3 reflectance) {
   return sum > 1e-10 ? det_div(diffuse, sum) : 1.0;
 }
 
-/// wo and wi are above the surface.
-precise BsdfValue phong_value(vec3 base_color, vec3 reflectance, float exponent, vec3 wo, vec3 wi) {
+/// wo and wi are above the surface. `base`: factor on the diffuse part of the value.
+precise BsdfValue phong_value(vec3 base_color, float base, vec3 reflectance, float exponent, vec3 wo, vec3 wi) {
   float n = lobe_exponent(exponent);
   float power = cosine_power((wo.z * wi.z - wo.x * wi.x) - wo.y * wi.y, n);
   float diffuse = diffuse_probability(base_color, reflectance);
-  return BsdfValue(base_color * INV_PI + reflectance * ((n + 2.0) * (0.5 * INV_PI) * power),
+  return BsdfValue(base_color * (INV_PI * base) + reflectance * ((n + 2.0) * (0.5 * INV_PI) * power),
                    diffuse * cosine_hemisphere_density(wi.z) + (1.0 - diffuse) * power_cosine_density(power, n));
 }
 

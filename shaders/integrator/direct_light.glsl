@@ -19,11 +19,10 @@ precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key,
                                    light.direction, light.radiance, light.density, light.target);)
   if (light.primitive != NO_PRIMITIVE && light.primitive == vertex.primitive) return vec3(0.0);
   if (max_component(light.radiance) == 0.0) return vec3(0.0);
-  precise vec3 wi = to_local(vertex.frame, light.direction);
   // An interpolated normal may see it from the other side than the true surface.
-  precise float side = det_dot(light.direction, surface.geometric_normal) * wi.z;
-  if (!(side > 0.0)) return vec3(0.0);
-  precise BsdfValue found = vertex_value(vertex, wi);
+  bool seen = on_its_side(surface, light.direction, to_local(vertex.frame, light.direction).z);
+  if (!seen && !has_folded(vertex, light.direction)) return vec3(0.0);
+  precise BsdfValue found = value_towards(vertex, light.direction);
   precise vec3 value = drop_negligible(found.value);
   if (max_component(value) == 0.0) return vec3(0.0);
   precise float weight = light_sample_weight(light.density, found.density);
@@ -37,8 +36,10 @@ precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key,
     direction = offset_point(light.target, light.target_normal, light.target_offset, -light.direction) - from;
     if (direction == vec3(0.0)) return vec3(0.0);
   }
+  precise float side = det_dot(light.direction, surface.geometric_normal);
+  bool transmits = side < 0.0;
   precise vec3 visible = visibility(from, direction, light.infinite ? RAY_LENGTH : 1.0,
-                                    medium_after(vertex, medium, wi.z < 0.0), time, key, shadow_dimension(segment),
+                                    medium_after(vertex, medium, transmits), time, key, shadow_dimension(segment),
                                     ray_count);
   TANDEM_RECORD(event_visibility(visible);)
   if (max_component(visible) == 0.0) return vec3(0.0);

@@ -42,13 +42,6 @@ precise vec3 weighted_environment(Origin origin, vec3 direction) {
   return radiance * scattered_weight(origin.density, environment_density(direction));
 }
 
-/// Whether a scattered direction is on the side of the true surface that its lobe says. Interpolated normals can send
-/// it to the other.
-bool on_its_side(Surface surface, BsdfSample scattered, vec3 direction) {
-  precise float cosine = det_dot(direction, surface.geometric_normal);
-  return (scattered.lobe & LOBE_TRANSMISSION) != 0 ? cosine < 0.0 : cosine > 0.0;
-}
-
 /// Radiance that arrives at the camera along one random path through a pixel. Adds the rays it traces to ray_count.
 precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count) {
   RandomKey key;
@@ -195,12 +188,21 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     for (uint attempt = 0; attempt < 2 && !leaves; ++attempt) {
       scattered = vertex_sample(vertex, u);
       next_direction = to_world(vertex.frame, scattered.direction);
-      leaves = vertex.in_medium || on_its_side(vertex.surface, scattered, next_direction);
-      // A density just loses this part of its lobe; a specular lobe would lose all, so there the geometric normal
-      // decides.
+      leaves = vertex.in_medium || on_its_side(vertex.surface, next_direction,
+                                               (scattered.lobe & LOBE_TRANSMISSION) != 0 ? -1.0 : 1.0);
+      // A specular lobe would lose all, so there the geometric normal decides; a density is folded or loses a part.
       if (vertex.has_density) break;
       vertex.frame = make_frame(vertex.surface.geometric_normal);
       vertex.wo = to_local(vertex.frame, -direction);
+    }
+    if (folds(vertex) && scattered.lobe != LOBE_NONE) {
+      if (!leaves) next_direction = folded(vertex.surface, next_direction);
+      if (has_folded(vertex, next_direction)) {
+        precise BsdfValue found = value_towards(vertex, next_direction);
+        leaves = found.density > 1e-20;
+        scattered.density = found.density;
+        if (leaves) scattered.weight = found.value * det_div(1.0, found.density);
+      }
     }
     TANDEM_RECORD(event_scatter(bits, vertex.in_medium ? NO_MATERIAL_MODEL : vertex.parameters.model, scattered.lobe,
                                 leaves, next_direction, scattered.weight, scattered.density, scattered.eta);)

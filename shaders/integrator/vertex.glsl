@@ -34,6 +34,54 @@ precise BsdfValue vertex_value(Vertex vertex, vec3 wi) {
   return found;
 }
 
+/// Whether a scattered direction is on the side of the true surface that wi.z says of the shading frame. Interpolated
+/// and mapped normals can send it to the other.
+bool on_its_side(Surface surface, vec3 direction, float wi_z) {
+  precise float agreement = det_dot(direction, surface.geometric_normal) * wi_z;
+  return agreement > 0.0;
+}
+
+/// Whether what glossy lobes scatter to the wrong side of the true surface is turned back to the right one: mirrored at
+/// the surface, so that none of it is lost. A diffuse lobe loses it, as it would shine where the light is grazing.
+bool folds(Vertex vertex) {
+  if (!FEATURE_MATERIALS || vertex.in_medium || !vertex.has_density) return false;
+  if (vertex.parameters.model == MATERIAL_DIFFUSE || vertex.parameters.model == MATERIAL_OREN_NAYAR) return false;
+  return vertex.surface.shading_normal != vertex.surface.geometric_normal;
+}
+
+/// A direction mirrored at the true surface.
+precise vec3 folded(Surface surface, vec3 direction) {
+  return direction - surface.geometric_normal * (2.0 * det_dot(direction, surface.geometric_normal));
+}
+
+/// Whether the glossy lobes send light to `direction` by way of its mirror image.
+bool has_folded(Vertex vertex, vec3 direction) {
+  if (!folds(vertex)) return false;
+  vec3 image = folded(vertex.surface, direction);
+  // The image is on the other side of the surface: it belongs there, or it is turned to this side.
+  return on_its_side(vertex.surface, direction, to_local(vertex.frame, image).z);
+}
+
+/// vertex_value for a direction in world space, with what is turned back to it from the wrong side of the true surface.
+precise BsdfValue value_towards(Vertex vertex, vec3 direction) {
+  precise BsdfValue sum;
+  sum.value = vec3(0.0);
+  sum.density = 0.0;
+  // A loop, so that the code of the BSDF is there once.
+  const uint images = has_folded(vertex, direction) ? 2 : 1;
+  for (uint image = 0; image < images; ++image) {
+    vec3 towards = direction;
+    if (image == 1) towards = folded(vertex.surface, direction);
+    precise vec3 wi = to_local(vertex.frame, towards);
+    if (!on_its_side(vertex.surface, direction, wi.z)) continue;
+    if (FEATURE_MATERIALS) vertex.parameters.glossy_only = image == 1;
+    precise BsdfValue found = vertex_value(vertex, wi);
+    sum.value += found.value;
+    sum.density += found.density;
+  }
+  return sum;
+}
+
 /// The medium into which the vertex scatters, from the one around it.
 uint medium_after(Vertex vertex, uint medium, bool transmitted) {
   if (!FEATURE_MEDIA || !transmitted || vertex.in_medium) return medium;

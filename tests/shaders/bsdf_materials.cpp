@@ -170,6 +170,7 @@ const bool FEATURE_MATERIALS = true;
 #include "bsdf/models.glsl"
 BsdfParameters material(uint index) {{
   BsdfParameters p;
+  p.glossy_only = false;
 {}  return p;
 }})",
                                   table),

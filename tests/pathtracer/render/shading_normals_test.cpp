@@ -1,0 +1,126 @@
+// What normals that are not the surface's own do to the energy of a material.
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "tests/pathtracer/render/picture.hpp"
+#include "tests/support/device_test.hpp"
+
+using namespace tandem;
+using namespace tandem::pathtracer;
+using tandem::test::estimate;
+using tandem::test::Estimate;
+using tandem::test::rendered;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A square with a normal that leans by an angle, as a normal map or smoothing makes it, or that lies at that angle
+/// itself; seen from +z in a white furnace.
+Estimate seen(const rhi::DeviceHandle& device, const GpuMaterial& material, double degrees, bool shading_only) {
+  const double angle = degrees * pi / 180;
+  const glm::vec3 normal(std::sin(angle), 0, std::cos(angle));
+  const glm::vec3 along = shading_only ? glm::vec3(1, 0, 0) : glm::vec3(std::cos(angle), 0, -std::sin(angle));
+  Scene scene;
+  scene.name = "square";
+  // Large, so that it fills the picture at any angle.
+  for (const glm::vec2 corner : {glm::vec2(-1, -1), glm::vec2(1, -1), glm::vec2(1, 1), glm::vec2(-1, 1)}) {
+    scene.positions.push_back(100.0f * (along * corner.x + glm::vec3(0, 1, 0) * corner.y));
+    scene.normals.push_back(normal);
+  }
+  const std::uint32_t smooth = shading_only && degrees > 0 ? triangle_smooth : 0;
+  scene.triangles = {{{0, 1, 2}, smooth}, {{0, 2, 3}, smooth}};
+  scene.materials = {material};
+  scene.material_names = {"m"};
+  const Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 150}, .height = 1};
+  const RenderSettings settings{.width = 16, .height = 16, .camera = camera, .background = glm::vec3(1)};
+  return estimate(rendered(device, scene, settings, 64));
+}
+
+GpuMaterial conductor(float roughness) {
+  GpuMaterial material;
+  material.model = MaterialModel::conductor;
+  material.reflectance = glm::vec3(1);
+  material.roughness = roughness;
+  return material;
+}
+
+GpuMaterial metal(float roughness) {
+  GpuMaterial material;
+  material.model = MaterialModel::principled;
+  material.base_color = glm::vec3(1);
+  material.metallic = 1;
+  material.ior = 1.5f;
+  material.reflectance = glm::vec3(1);
+  material.roughness = roughness;
+  return material;
+}
+
+GpuMaterial glass(float roughness) {
+  GpuMaterial material;
+  material.model = MaterialModel::rough_dielectric;
+  material.ior = 1.5f;
+  material.roughness = roughness;
+  return material;
+}
+
+GpuMaterial sheet(float roughness) {
+  GpuMaterial material = metal(roughness);
+  material.metallic = 0;
+  material.transmission = 1;
+  return material;
+}
+
+GpuMaterial phong(MaterialModel model) {
+  GpuMaterial material;
+  material.model = model;
+  material.base_color = glm::vec3(0);
+  material.reflectance = glm::vec3(1);
+  material.exponent = 50;
+  return material;
+}
+
+}  // namespace
+
+TANDEM_DEVICE_TEST("A shading normal changes no glossy lobe's energy: as a surface that leans by itself") {
+  std::vector<GpuMaterial> materials;
+  for (const float roughness : {0.0f, 0.3f, 0.6f, 1.0f})
+    for (const GpuMaterial& material : {conductor(roughness), metal(roughness), glass(roughness), sheet(roughness)})
+      materials.push_back(material);
+  for (const double degrees : {0.0, 20.0, 46.0, 60.0, 75.0, 85.0})
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+      CAPTURE(degrees);
+      CAPTURE(i);
+      const Estimate leaning = seen(device_handle, materials[i], degrees, true);
+      const Estimate flat = seen(device_handle, materials[i], degrees, false);
+      // Five standard errors of both; and what sampling loses near grazing angles, where cosines below 1e-5 are none.
+      const double tolerance = 5 * std::hypot(leaning.standard_error, flat.standard_error) + 2e-3;
+      CHECK(std::abs(leaning.mean - flat.mean) < tolerance);
+      CHECK(leaning.mean < 1 + tolerance + 0.01);  // microfacet tables are fits within 0.01
+    }
+}
+
+TANDEM_DEVICE_TEST("A white metal under a leaning normal is white") {
+  for (const double degrees : {0.0, 40.0, 46.0, 50.0, 60.0, 70.0, 80.0})
+    for (const float roughness : {0.0f, 0.5f, 1.0f}) {
+      CAPTURE(degrees);
+      CAPTURE(roughness);
+      // The fits of microfacet albedos are within 0.01.
+      CHECK(seen(device_handle, metal(roughness), degrees, true).mean == doctest::Approx(1).epsilon(0.015));
+      CHECK(seen(device_handle, conductor(roughness), degrees, true).mean == doctest::Approx(1).epsilon(0.015));
+    }
+}
+
+TANDEM_DEVICE_TEST("Phong's lobes under a leaning normal lose nothing by it") {
+  for (const MaterialModel model : {MaterialModel::phong, MaterialModel::blinn_phong})
+    for (const double degrees : {30.0, 60.0, 80.0}) {
+      CAPTURE(degrees);
+      const Estimate leaning = seen(device_handle, phong(model), degrees, true);
+      const Estimate flat = seen(device_handle, phong(model), degrees, false);
+      CHECK(std::abs(leaning.mean - flat.mean) < 5 * std::hypot(leaning.standard_error, flat.standard_error) + 2e-3);
+    }
+}
