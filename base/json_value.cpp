@@ -138,6 +138,13 @@ glm::vec3 Value::vector(const Range& each) const {
   return result;
 }
 
+glm::dvec3 Value::double_vector(const Range& each) const {
+  glm::dvec3 result{0};
+  const std::vector<Value> components = elements(3);
+  for (int i = 0; i < 3; ++i) result[i] = components[static_cast<std::size_t>(i)].double_number(each);
+  return result;
+}
+
 glm::vec3 Value::direction(const Range& each) const {
   const glm::vec3 result = vector(each);
   if (result == glm::vec3(0)) fail("must not be 0, 0, 0");

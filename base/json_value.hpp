@@ -66,6 +66,7 @@ class Value {
   std::uint32_t whole_number(std::uint32_t minimum, std::uint32_t maximum) const;
   /// [x, y, z]
   glm::vec3 vector(const Range& each) const;
+  glm::dvec3 double_vector(const Range& each) const;  ///< as it is written, not rounded to floats
   /// [x, y, z], not all 0
   glm::vec3 direction(const Range& each) const;
   /// [r, g, b] or one number for all three; linear, with the primaries of sRGB.

@@ -7,6 +7,7 @@ namespace tandem::compare {
 JobSummary summary(const Job& job) {
   return {.scene = job.file.empty() ? job.scene.name : job.file.string(),
           .scene_hash = pathtracer::scene_hash(job.scene),
+          .origin = job.scene.origin,
           .triangles = job.scene.triangles.size(),
           .spheres = job.scene.spheres.size(),
           .settings = job.settings,

@@ -21,6 +21,7 @@ struct Job {
 struct JobSummary {
   std::string scene;       ///< the file
   std::string scene_hash;  ///< of its content, as pathtracer::scene_hash gives it
+  glm::dvec3 origin{0};    ///< of the scene: where its file has what is 0,0,0 in paths
   std::uint64_t triangles = 0;
   std::uint64_t spheres = 0;
   pathtracer::RenderSettings settings;

@@ -9,19 +9,31 @@
 #include "base/printable.hpp"
 #include "pathtracer/load/description/description.hpp"
 #include "pathtracer/load/gltf/loader.hpp"
+#include "pathtracer/scene/local_origin.hpp"
 
 namespace tandem::pathtracer {
-
 namespace {
 
-Scene load(const std::filesystem::path& path, const ObjOptions& options) {
+Scene load(const std::filesystem::path& path, const ObjOptions& options);
+
+Scene load_at(const std::filesystem::path& path, const ObjOptions& options, const glm::dvec3& origin) {
   std::string extension = path.extension().string();
   std::ranges::transform(extension, extension.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c + 32) : c; });
-  if (extension == ".obj") return load_obj(path, options);
+  if (extension == ".obj") return load_obj(path, options, origin);
   if (extension == ".json")
-    return load_description(path, [&](const std::filesystem::path& model) { return load(model, options); });
-  if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
+    return load_description(
+        path, [&](const std::filesystem::path& model) { return load(model, options); }, origin);
+  if (extension == ".gltf" || extension == ".glb") return load_gltf(path, origin);
   throw Error(fmt::format("cannot read '{}': the name of a scene ends in .obj, .json, .gltf or .glb", path.string()));
+}
+
+Scene load(const std::filesystem::path& path, const ObjOptions& options) {
+  Scene scene = load_at(path, options, glm::dvec3(0));
+  const glm::dvec3 origin = local_origin(scene);
+  if (origin == glm::dvec3(0)) return scene;
+  // What was rounded to floats is read once more, relative to the origin.
+  scene = {};
+  return load_at(path, options, origin);
 }
 
 }  // namespace

@@ -44,13 +44,20 @@ glm::vec3 direction_of(const glm::dmat3& matrix, glm::vec3 direction) {
   return length > 0 ? glm::vec3(result / length) : direction;
 }
 
-glm::vec3 point_of(const glm::dmat4& transform, glm::vec3 point, const std::string& name) {
-  const glm::dvec3 result(transform * glm::dvec4(glm::dvec3(point), 1.0));
-  for (int axis = 0; axis < 3; ++axis)
-    if (!(std::abs(result[axis]) <= largest_coordinate))
-      throw Error(fmt::format("{}: its transform leads beyond {:g}", name, largest_coordinate));
-  return glm::vec3(result);
-}
+/// From the coordinates of a model, whose 0,0,0 is `from` in its file, to those of a scene, whose is `to`.
+struct Placement {
+  glm::dmat4 transform;
+  glm::dvec3 from;
+  glm::dvec3 to;
+
+  glm::vec3 point(glm::vec3 local, const std::string& name) const {
+    const glm::dvec3 result(transform * glm::dvec4(glm::dvec3(local) + from, 1.0));
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(result[axis]) <= largest_coordinate))
+        throw Error(fmt::format("{}: its transform leads beyond {:g}", name, largest_coordinate));
+    return glm::vec3(result - to);
+  }
+};
 
 /// The factor by which a similarity scales, or nothing for a map that is none.
 std::optional<double> similarity_scale(const glm::dmat3& linear) {
@@ -63,10 +70,10 @@ std::optional<double> similarity_scale(const glm::dmat3& linear) {
   return scale;
 }
 
-void transform_geometry(Scene& model, const glm::dmat4& transform) {
-  const glm::dmat3 linear(transform);
+void transform_geometry(Scene& model, const Placement& placement) {
+  const glm::dmat3 linear(placement.transform);
   const glm::dmat3 for_normals = glm::transpose(glm::inverse(linear));
-  for (glm::vec3& position : model.positions) position = point_of(transform, position, model.name);
+  for (glm::vec3& position : model.positions) position = placement.point(position, model.name);
   for (glm::vec3& normal : model.normals) normal = direction_of(for_normals, normal);
   if (glm::determinant(linear) < 0)
     for (GpuTriangle& triangle : model.triangles) std::swap(triangle.vertices[1], triangle.vertices[2]);
@@ -74,22 +81,22 @@ void transform_geometry(Scene& model, const glm::dmat4& transform) {
   const std::optional<double> scale = similarity_scale(linear);
   if (!scale) throw Error(fmt::format("{}: its transform would deform its spheres", model.name));
   for (GpuSphere& sphere : model.spheres) {
-    sphere.centre = point_of(transform, sphere.centre, model.name);
+    sphere.centre = placement.point(sphere.centre, model.name);
     sphere.radius *= static_cast<float>(*scale);
     sphere.motion = glm::vec3(linear * glm::dvec3(sphere.motion));
   }
 }
 
-void transform_views(Scene& model, const glm::dmat4& transform) {
-  const glm::dmat3 linear(transform);
+void transform_views(Scene& model, const Placement& placement) {
+  const glm::dmat3 linear(placement.transform);
   for (PunctualLight& light : model.lights) {
-    light.position = point_of(transform, light.position, model.name);
+    light.position = placement.point(light.position, model.name);
     light.direction = direction_of(linear, light.direction);
   }
   if (!model.camera) return;
   Camera& camera = *model.camera;
-  camera.position = point_of(transform, camera.position, model.name);
-  camera.target = point_of(transform, camera.target, model.name);
+  camera.position = placement.point(camera.position, model.name);
+  camera.target = placement.point(camera.target, model.name);
   camera.up = direction_of(linear, camera.up);
   camera.motion = glm::vec3(linear * glm::dvec3(camera.motion));
   const float scale = static_cast<float>(std::cbrt(std::abs(glm::determinant(linear))));
@@ -101,9 +108,10 @@ void transform_views(Scene& model, const glm::dmat4& transform) {
 }  // namespace
 
 void append(Scene& scene, Scene model, const glm::dmat4& transform) {
-  if (transform != glm::dmat4(1.0)) {
-    transform_geometry(model, transform);
-    transform_views(model, transform);
+  if (transform != glm::dmat4(1.0) || model.origin != scene.origin) {
+    const Placement placement{transform, model.origin, scene.origin};
+    transform_geometry(model, placement);
+    transform_views(model, placement);
   }
   const std::size_t materials = scene.materials.size();
   for (GpuMaterial& material : model.materials) shift_references(material, scene.textures.size(), scene.media.size());

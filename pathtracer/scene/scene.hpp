@@ -60,6 +60,7 @@ struct Environment {
 /// of the file. Instances are resolved by the loaders (docs/decisions).
 struct Scene {
   std::string name;                  ///< file name without its folder
+  glm::dvec3 origin{0};              ///< where the file has the point that is 0,0,0 here (scene/local_origin.hpp)
   std::vector<glm::vec3> positions;  ///< finite
   std::vector<glm::vec3> normals;    ///< one for each position, unit length; meaningful in smooth triangles only
   std::vector<glm::vec2> texture_coordinates;  ///< one for each position, v upwards; none where nothing has a texture

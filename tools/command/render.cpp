@@ -31,6 +31,25 @@ struct Options {
   bool layers = false;  ///< what pixels show first, beside the picture
 };
 
+/// Says so when most of a picture is brighter than it can show, and which exposure helps.
+void note_clipping(const pathtracer::Image& image, const pathtracer::Tone& tone) {
+  if (tone.curve != pathtracer::ToneCurve::srgb && tone.curve != pathtracer::ToneCurve::gamma) return;
+  std::vector<float> brightest;
+  for (const glm::vec3& pixel : image.pixels) brightest.push_back(std::max({pixel.x, pixel.y, pixel.z}));
+  const double white = std::exp2(-tone.exposure);
+  constexpr double margin = 1.01;  // a white background is not too bright
+  const auto clipped = std::ranges::count_if(brightest, [&](float value) { return value > margin * white; });
+  const double fraction =
+      static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(brightest.size(), 1));
+  if (!(fraction > 0.5)) return;
+  // Nine tenths of the pixels fit.
+  const auto ninth = brightest.begin() + static_cast<std::ptrdiff_t>(0.9 * static_cast<double>(brightest.size() - 1));
+  std::ranges::nth_element(brightest, ninth);
+  if (!std::isfinite(*ninth)) return;
+  print_note(fmt::format("{:.0f} % of the picture is brighter than white; --exposure {} shows it", 100 * fraction,
+                         std::max(-100.0, -std::ceil(std::log2(double{*ninth})))));
+}
+
 int render_image(const Options& options) {
   pathtracer::check_image_path(options.output);
   if (options.layers && options.output.extension() != ".exr")
@@ -47,6 +66,7 @@ int render_image(const Options& options) {
   const auto finite = static_cast<std::size_t>(std::ranges::count_if(rendering.image.pixels, is_finite));
   if (finite < pixels)
     print_warnings({fmt::format("{} of {} pixels are not finite numbers (NaN or infinity)", pixels - finite, pixels)});
+  if (options.output.extension() == ".png") note_clipping(rendering.image, options.tone);
   std::vector<pathtracer::ImageChannel> layers;
   if (options.layers) layers = pathtracer::first_hits(renderer.scene(), job.samples);
   const OutputFile file{options.output, [&](const std::filesystem::path& path) {

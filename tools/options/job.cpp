@@ -2,13 +2,17 @@
 
 #include <cmath>
 #include <optional>
+#include <vector>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "devices/devices.hpp"
 #include "pathtracer/load/scene_loader.hpp"
+#include "pathtracer/scene/panes.hpp"
+#include "pathtracer/scene/studio.hpp"
 #include "tools/output/messages.hpp"
 
 namespace tandem::tools {
@@ -31,10 +35,10 @@ std::optional<pathtracer::Camera> camera_of(const RenderOptions& options, const 
     return std::nullopt;
   pathtracer::Camera camera = scene.camera ? *scene.camera : pathtracer::automatic_camera(scene, aspect);
   if (options.camera_position) {
-    camera.position = *options.camera_position;
+    camera.position = glm::vec3(*options.camera_position - scene.origin);
     camera.target = pathtracer::bounds(scene).centre();
   }
-  camera.target = options.camera_target.value_or(camera.target);
+  if (options.camera_target) camera.target = glm::vec3(*options.camera_target - scene.origin);
   camera.vertical_fov = options.field_of_view.value_or(camera.vertical_fov);
   if (moved) camera.up = up_for(camera);
   if (options.camera && *options.camera != camera.kind) {
@@ -48,6 +52,36 @@ std::optional<pathtracer::Camera> camera_of(const RenderOptions& options, const 
   return camera;
 }
 
+void say_origin(const pathtracer::Scene& scene) {
+  const glm::dvec3& origin = scene.origin;
+  if (origin == glm::dvec3(0)) return;
+  print_note(fmt::format(
+      "{}: far from 0,0,0, so it is rendered relative to {},{},{}; camera positions count from the file's 0,0,0",
+      scene.name, origin.x, origin.y, origin.z));
+}
+
+/// Glass that light enters and does not leave: a warning for each material, or panes where the options say so.
+void treat_open_glass(pathtracer::Scene& scene, bool thin_panes) {
+  const std::vector<std::uint32_t> open = open_dielectrics(scene);
+  if (thin_panes) return make_panes(scene, open);
+  for (const std::uint32_t material : open)
+    print_warnings(
+        {fmt::format("{}: the mesh of the dielectric material '{}' is not closed, so light that enters it "
+                     "does not leave it; --thin-panes makes it a thin pane",
+                     scene.name, scene.material_names[material])});
+}
+
+/// A model that is opened for the first time is to be seen. A description that lights itself badly means to.
+void light_up(pathtracer::Scene& scene, bool is_description) {
+  const pathtracer::OwnLight light = own_light(scene);
+  if (light == pathtracer::OwnLight::sufficient) return;
+  if (light == pathtracer::OwnLight::negligible && is_description) return;
+  add_studio(scene);
+  print_note(
+      fmt::format("{}: {}, so a neutral studio light is added; --background R,G,B renders without it", scene.name,
+                  light == pathtracer::OwnLight::none ? "nothing emits light" : "what it emits hardly lights it"));
+}
+
 }  // namespace
 
 compare::Job load_job(const RenderOptions& options) {
@@ -55,12 +89,15 @@ compare::Job load_job(const RenderOptions& options) {
   job.file = options.scene;
   job.scene = pathtracer::load_scene(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
   print_warnings(job.scene.warnings);
+  say_origin(job.scene);
+  treat_open_glass(job.scene, options.thin_panes);
   pathtracer::SceneSettings wanted = options.settings;
   if (options.size) {
     wanted.width = options.size->x;
     wanted.height = options.size->y;
   }
   wanted = merged(wanted, job.scene.settings);
+  if (!wanted.background) light_up(job.scene, options.scene.extension() == ".json");
   job.samples = wanted.samples.value_or(job.samples);
   job.settings = pathtracer::render_settings(wanted);
   job.settings.planned_samples = job.samples;

@@ -151,4 +151,21 @@ CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optiona
   return command.add_option_function<std::string>(name, read, description)->type_name(type);
 }
 
+CLI::Option* add_point(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& value,
+                       const std::string& description) {
+  const auto read = [&value, name](const std::string& text) {
+    constexpr const char* expected = "three numbers such as 0,1.5,2";
+    const auto parts = split<3>(text, ',');
+    if (!parts) refuse(name, text, expected);
+    glm::dvec3 point(0);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::optional<double> component = number<double>((*parts)[static_cast<std::size_t>(axis)]);
+      if (!component || !std::isfinite(static_cast<float>(*component))) refuse(name, text, expected);
+      point[axis] = *component;
+    }
+    value = point;
+  };
+  return command.add_option_function<std::string>(name, read, description)->type_name("X,Y,Z");
+}
+
 }  // namespace tandem::tools

@@ -57,4 +57,8 @@ CLI::Option* add_named(CLI::App& command, const std::string& name, std::optional
 CLI::Option* add_vector(CLI::App& command, const std::string& name, std::optional<glm::vec3>& value, float least,
                         const std::string& type, const std::string& description);
 
+/// A point: three finite numbers, comma-separated, each within the range of a float.
+CLI::Option* add_point(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& value,
+                       const std::string& description);
+
 }  // namespace tandem::tools

@@ -21,7 +21,6 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   constexpr std::uint32_t most_samples = 1U << 24;
   constexpr std::uint32_t most_depth = 1024;
   constexpr std::uint32_t most_threads = 1024;
-  constexpr float any = std::numeric_limits<float>::lowest();
   constexpr float most = 1e30F;
 
   command.add_option("SCENE", options.scene, "Wavefront OBJ, glTF (.gltf, .glb) or scene description (.json)")
@@ -29,6 +28,8 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
       ->type_name("FILE");
   command.add_flag("--allow-missing-mtl", options.allow_missing_mtl,
                    "Warn about a missing MTL file or texture and use a grey or opaque material instead of failing");
+  command.add_flag("--thin-panes", options.thin_panes,
+                   "Treat a dielectric whose mesh is not closed, such as a window of one face, as a thin pane");
   const auto group = [&](const char* name) { return command.add_option_group(name); };
   pathtracer::SceneSettings& settings = options.settings;
 
@@ -42,10 +43,10 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
 
   CLI::App& view = *group("View");
   add_named(view, "--camera", options.camera, pathtracer::camera_names(), "Kind of camera [perspective]");
-  add_vector(view, "--camera-position", options.camera_position, any, "X,Y,Z",
-             "Camera position, in scene units [chosen to show the whole scene]");
-  add_vector(view, "--camera-target", options.camera_target, any, "X,Y,Z",
-             "Point that the camera looks at [the scene's centre, or chosen with the position]");
+  add_point(view, "--camera-position", options.camera_position,
+            "Camera position, in the coordinates of the scene's file [chosen to show the whole scene]");
+  add_point(view, "--camera-target", options.camera_target,
+            "Point that the camera looks at [the scene's centre, or chosen with the position]");
   add_number(view, "--fov", options.field_of_view, 1.0F, 175.0F, "DEGREES",
              "Vertical field of view [40, or chosen with the camera]");
   add_number(view, "--view-height", options.view_height, 0.0F, most, "LENGTH",
@@ -55,7 +56,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_number(view, "--focus-distance", options.focus_distance, 0.0F, most, "LENGTH",
              "Distance of the plane in focus [that of the target]");
   add_vector(view, "--background", settings.background, 0.0F, "R,G,B",
-             "Radiance of rays that leave the scene [0,0,0; 1,1,1 for a scene without emitters]");
+             "Radiance of rays that leave the scene [0,0,0, and a studio light for a scene without light]");
 
   CLI::App& method = *group("Method");
   add_named(

@@ -17,10 +17,10 @@ namespace tandem::tools {
 /// come from the scene file.
 struct RenderOptions {
   std::filesystem::path scene;
-  pathtracer::SceneSettings settings;        ///< but the size
-  std::optional<glm::uvec2> size;            ///< pixels
-  std::optional<glm::vec3> camera_position;  ///< in the scene's units; none: that of the file, or the automatic camera
-  std::optional<glm::vec3> camera_target;
+  pathtracer::SceneSettings settings;         ///< but the size
+  std::optional<glm::uvec2> size;             ///< pixels
+  std::optional<glm::dvec3> camera_position;  ///< in the scene's units; none: that of the file, or the automatic camera
+  std::optional<glm::dvec3> camera_target;
   std::optional<float> field_of_view;  ///< vertical, degrees
   std::optional<pathtracer::CameraKind> camera;
   std::optional<float> view_height;              ///< of an orthographic camera
@@ -29,6 +29,7 @@ struct RenderOptions {
   std::uint32_t threads = 0;                     ///< of the CPU device; 0: all
   std::optional<pathtracer::TracingMode> trace;  ///< none: what the device has, ray queries first
   bool validation = false;                       ///< Vulkan validation layers
+  bool thin_panes = false;                       ///< dielectrics whose mesh is not closed are sheets without thickness
   bool allow_missing_mtl = false;                ///< a missing MTL file or texture is a warning
 };
 

@@ -262,6 +262,8 @@ std::string table(const compare::Explanation& explanation, const ExplanationTabl
   };
   line("scene", scene_text(explanation.job));
   line("settings", settings_text(explanation.job));
+  if (const glm::dvec3& origin = explanation.job.origin; origin != glm::dvec3(0))
+    line("positions", fmt::format("relative to {},{},{} of the file", origin.x, origin.y, origin.z));
   line("a", fmt::format("{}, {}", explanation.a.name, pathtracer::name(explanation.trace_a)));
   line("b", fmt::format("{}, {}", explanation.b.name, pathtracer::name(explanation.trace_b)));
   line("pixel", pixel_text(explanation));

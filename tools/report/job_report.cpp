@@ -11,7 +11,12 @@ nlohmann::ordered_json optional_json(const std::optional<std::uint32_t>& value) 
   return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
-nlohmann::ordered_json vector_json(const glm::vec3& vector) { return {vector.x, vector.y, vector.z}; }
+nlohmann::ordered_json vector_json(const glm::dvec3& vector) { return {vector.x, vector.y, vector.z}; }
+
+/// A point of a scene in the coordinates of its file.
+nlohmann::ordered_json point_json(const compare::JobSummary& job, const glm::vec3& point) {
+  return vector_json(job.origin == glm::dvec3(0) ? glm::dvec3(point) : job.origin + glm::dvec3(point));
+}
 
 }  // namespace
 
@@ -77,8 +82,8 @@ nlohmann::ordered_json settings_json(const compare::JobSummary& job, const patht
                                      const glm::vec3& background) {
   nlohmann::ordered_json json = to_json(job);
   json["camera"] = name_of(pathtracer::camera_names(), camera.kind);
-  json["camera_position"] = vector_json(camera.position);
-  json["camera_target"] = vector_json(camera.target);
+  json["camera_position"] = point_json(job, camera.position);
+  json["camera_target"] = point_json(job, camera.target);
   json["camera_up"] = vector_json(camera.up);
   json["fov"] = camera.vertical_fov;
   json["view_height"] = camera.height;

@@ -13,7 +13,8 @@
 
 namespace tandem::pathtracer {
 
-Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model) {
+Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model,
+                       const glm::dvec3& origin) {
   using namespace description;
   const nlohmann::json document = json::parse(path);
   const std::filesystem::path folder = path.parent_path();
@@ -24,12 +25,13 @@ Scene load_description(const std::filesystem::path& path, const description::Mod
     if (const std::optional<Value> text = root.get(key)) text->text();
 
   Scene scene;
+  scene.origin = origin;
   scene.name = path.filename().string();
   Textures textures(root.get("textures"), folder, scene);
   const NamedIndices media = read_media(root.get("media"), scene);
   const NamedIndices materials = read_materials(root.get("materials"), textures, media, scene);
   // What the description says itself comes before what a model of it says.
-  if (const std::optional<Value> camera = root.get("camera")) scene.camera = read_camera(*camera);
+  if (const std::optional<Value> camera = root.get("camera")) scene.camera = read_camera(*camera, origin);
   if (const std::optional<Value> settings = root.get("settings")) scene.settings = read_settings(*settings);
   if (const std::optional<Value> environment = root.get("environment"))
     scene.environment = read_environment(*environment, textures);

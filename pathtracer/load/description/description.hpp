@@ -13,6 +13,8 @@ namespace tandem::pathtracer {
 /// for names that stand for nothing, for a scene without triangles and spheres, and for what the loaders of its models
 /// and images refuse.
 /// @param load_model reads the models that it names
-Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model);
+/// @param origin point of the description that is to be 0,0,0 of the scene
+Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model,
+                       const glm::dvec3& origin = glm::dvec3(0));
 
 }  // namespace tandem::pathtracer

@@ -19,9 +19,10 @@ std::vector<Value> elements_of(const std::optional<Value>& list) {
   return list ? list->elements() : std::vector<Value>();
 }
 
-glm::dmat4 transform_of(const Object& object) {
+/// Far from 0 numbers count as they are written; elsewhere as the floats that they always were.
+glm::dmat4 transform_of(const Object& object, const Scene& scene) {
   const std::optional<Value> transform = object.get("transform");
-  return transform ? read_transform(*transform) : glm::dmat4(1.0);
+  return transform ? read_transform(*transform, scene.origin != glm::dvec3(0)) : glm::dmat4(1.0);
 }
 
 /// "it has: a, b and 7 more"
@@ -70,6 +71,10 @@ void place(const Value& value, Scene model, const glm::dmat4& transform, std::ui
 
 }  // namespace
 
+glm::vec3 read_point(const Value& value, const Scene& scene) {
+  return glm::vec3(value.double_vector(any_length) - scene.origin);
+}
+
 void add_models(const std::optional<Value>& list, const std::filesystem::path& folder, const ModelLoader& load_model,
                 const NamedIndices& materials, Scene& scene) {
   std::map<std::filesystem::path, Scene> loaded;  // a file that is placed twice is read once
@@ -78,7 +83,7 @@ void add_models(const std::optional<Value>& list, const std::filesystem::path& f
     const Value file = object.require("file");
     const std::filesystem::path path = folder / file.text();
     if (path.extension() == ".json") file.fail("must be a model, not another description");
-    const glm::dmat4 transform = transform_of(object);
+    const glm::dmat4 transform = transform_of(object, scene);
     if (!loaded.contains(path)) {
       loaded.emplace(path, load_model(path));
       scene.warnings.insert(scene.warnings.end(), loaded[path].warnings.begin(), loaded[path].warnings.end());
@@ -95,7 +100,7 @@ void add_spheres(const std::optional<Value>& list, const NamedIndices& materials
   for (const Value& value : elements_of(list)) {
     const Object object(value, {"centre", "radius", "motion", "material"});
     GpuSphere sphere;
-    sphere.centre = object.require("centre").vector(any_length);
+    sphere.centre = read_point(object.require("centre"), scene);
     sphere.radius = object.require("radius").number(positive_length);
     object.read("motion", sphere.motion, &Value::vector, any_length);
     sphere.material = materials.find(object.require("material"));
@@ -106,10 +111,14 @@ void add_spheres(const std::optional<Value>& list, const NamedIndices& materials
 void add_boxes(const std::optional<Value>& list, const NamedIndices& materials, Scene& scene) {
   for (const Value& value : elements_of(list)) {
     const Object object(value, {"minimum", "maximum", "transform", "material"});
-    const glm::vec3 low = object.require("minimum").vector(any_length);
-    const glm::vec3 high = object.require("maximum").vector(any_length);
+    const glm::dvec3 minimum = object.require("minimum").double_vector(any_length);
+    const glm::dvec3 maximum = object.require("maximum").double_vector(any_length);
+    Scene box;
+    if (scene.origin != glm::dvec3(0)) box.origin = minimum;
+    const glm::vec3 low(minimum - box.origin);
+    const glm::vec3 high(maximum - box.origin);
     for (int axis = 0; axis < 3; ++axis)
-      if (!(low[axis] < high[axis])) value.fail("must have a maximum above its minimum along every axis");
+      if (!(minimum[axis] < maximum[axis])) value.fail("must have a maximum above its minimum along every axis");
     const auto corner = [&](int index) {
       return glm::vec3((index & 1) != 0 ? high.x : low.x, (index & 2) != 0 ? high.y : low.y,
                        (index & 4) != 0 ? high.z : low.z);
@@ -117,16 +126,15 @@ void add_boxes(const std::optional<Value>& list, const NamedIndices& materials, 
     // Each face counter-clockwise seen from outside, upright where it stands.
     constexpr std::array<std::array<int, 4>, 6> faces = {
         {{4, 5, 7, 6}, {1, 0, 2, 3}, {5, 1, 3, 7}, {0, 4, 6, 2}, {6, 7, 3, 2}, {0, 1, 5, 4}}};
-    Scene box;
     for (const auto& [a, b, c, d] : faces) add_quadrilateral(box, {corner(a), corner(b), corner(c), corner(d)});
-    place(value, std::move(box), transform_of(object), materials.find(object.require("material")), scene);
+    place(value, std::move(box), transform_of(object, scene), materials.find(object.require("material")), scene);
   }
 }
 
 void add_quads(const std::optional<Value>& list, const NamedIndices& materials, Scene& scene) {
   for (const Value& value : elements_of(list)) {
     const Object object(value, {"corner", "u", "v", "material"});
-    const glm::vec3 corner = object.require("corner").vector(any_length);
+    const glm::vec3 corner = read_point(object.require("corner"), scene);
     const glm::vec3 u = object.require("u").vector(any_length);
     const glm::vec3 v = object.require("v").vector(any_length);
     add_parallelogram(value, corner, u, v, materials.find(object.require("material")), scene);
@@ -138,6 +146,7 @@ void add_parallelogram(const Value& value, glm::vec3 corner, glm::vec3 u, glm::v
   if (glm::length(glm::cross(glm::dvec3(u), glm::dvec3(v))) == 0)
     value.fail("must have sides u and v that span an area");
   Scene quad;
+  quad.origin = scene.origin;
   add_quadrilateral(quad, {corner, corner + u, corner + u + v, corner + v});
   place(value, std::move(quad), glm::dmat4(1.0), material, scene);
 }

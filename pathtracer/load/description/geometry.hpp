@@ -11,6 +11,9 @@
 
 namespace tandem::pathtracer::description {
 
+/// A point of the description in the coordinates of the scene. Throws Error.
+glm::vec3 read_point(const Value& value, const Scene& scene);
+
 /// Reads a model: any scene file that is not a description itself.
 using ModelLoader = std::function<Scene(const std::filesystem::path&)>;
 

@@ -40,7 +40,7 @@ std::uint32_t add_light_material(const Object& light, std::size_t number, Scene&
   return static_cast<std::uint32_t>(scene.materials.size() - 1);
 }
 
-PunctualLight read_punctual_light(Kind kind, const Object& object) {
+PunctualLight read_punctual_light(Kind kind, const Object& object, const Scene& scene) {
   PunctualLight light;
   if (kind == Kind::directional) {
     light.kind = LightKind::directional;
@@ -49,7 +49,7 @@ PunctualLight read_punctual_light(Kind kind, const Object& object) {
     return light;
   }
   light.kind = kind == Kind::spot ? LightKind::spot : LightKind::point;
-  light.position = object.require("position").vector(any_length);
+  light.position = read_point(object.require("position"), scene);
   light.radiance = object.require("intensity").color(radiance_range);
   if (kind == Kind::point) return light;
   light.direction = object.require("direction").direction(any_length);
@@ -68,17 +68,17 @@ void add_lights(const std::optional<Value>& list, Scene& scene) {
     const Kind kind = type_of<Kind>(value, kinds);
     const Object object(value, keys_of(kind));
     if (kind == Kind::rectangle) {
-      const glm::vec3 corner = object.require("corner").vector(any_length);
+      const glm::vec3 corner = read_point(object.require("corner"), scene);
       const glm::vec3 u = object.require("u").vector(any_length);
       const glm::vec3 v = object.require("v").vector(any_length);
       add_parallelogram(value, corner, u, v, add_light_material(object, number, scene), scene);
     } else if (kind == Kind::sphere) {
-      const glm::vec3 centre = object.require("centre").vector(any_length);
+      const glm::vec3 centre = read_point(object.require("centre"), scene);
       const float radius = object.require("radius").number(positive_length);
       scene.spheres.push_back(
           {.centre = centre, .radius = radius, .material = add_light_material(object, number, scene)});
     } else {
-      scene.lights.push_back(read_punctual_light(kind, object));
+      scene.lights.push_back(read_punctual_light(kind, object, scene));
     }
     ++number;
   }

@@ -7,7 +7,15 @@
 namespace tandem::pathtracer::description {
 namespace {
 
-glm::dmat4 read_step(const Value& value) {
+double number_of(const Value& value, bool exact) {
+  return exact ? value.double_number(any_length) : double{value.number(any_length)};
+}
+
+glm::dvec3 vector_of(const Value& value, bool exact) {
+  return exact ? value.double_vector(any_length) : glm::dvec3(value.vector(any_length));
+}
+
+glm::dmat4 read_step(const Value& value, bool exact) {
   const Object step(value, {"translate", "rotate", "axis", "scale"});
   const glm::dmat4 identity(1.0);
   const std::optional<Value> translate = step.get("translate");
@@ -16,15 +24,15 @@ glm::dmat4 read_step(const Value& value) {
   if (int{translate.has_value()} + int{rotate.has_value()} + int{scale.has_value()} != 1)
     value.fail("must have one of: translate, rotate, scale");
   if (rotate.has_value() != step.get("axis").has_value()) value.fail("must have an axis with rotate, and only then");
-  if (translate) return glm::translate(identity, glm::dvec3(translate->vector(any_length)));
+  if (translate) return glm::translate(identity, vector_of(*translate, exact));
   if (scale)
-    return glm::scale(identity,
-                      glm::dvec3(scale->is_array() ? scale->vector(any_length) : glm::vec3(scale->number(any_length))));
-  const glm::dvec3 axis(step.require("axis").direction(any_length));
-  return glm::rotate(identity, glm::radians(double{rotate->number(any_length)}), glm::normalize(axis));
+    return glm::scale(identity, scale->is_array() ? vector_of(*scale, exact) : glm::dvec3(number_of(*scale, exact)));
+  const Value direction = step.require("axis");
+  direction.direction(any_length);  // which is not 0
+  return glm::rotate(identity, glm::radians(number_of(*rotate, exact)), glm::normalize(vector_of(direction, exact)));
 }
 
-glm::dmat4 read_matrix(const Value& value, const std::vector<Value>& rows) {
+glm::dmat4 read_matrix(const Value& value, const std::vector<Value>& rows, bool exact) {
   if (rows.size() != 3 && rows.size() != 4) value.fail("must have 3 or 4 rows");
   glm::dmat4 matrix(1.0);
   for (int row = 0; row < static_cast<int>(rows.size()); ++row) {
@@ -32,7 +40,7 @@ glm::dmat4 read_matrix(const Value& value, const std::vector<Value>& rows) {
     for (int column = 0; column < 4; ++column) {
       const Value& element = columns[static_cast<std::size_t>(column)];
       const double required = column == 3 ? 1 : 0;
-      matrix[column][row] = double{element.number(any_length)};
+      matrix[column][row] = number_of(element, exact);
       if (row == 3 && matrix[column][row] != required) element.fail(fmt::format("must be {}", required));
     }
   }
@@ -41,13 +49,13 @@ glm::dmat4 read_matrix(const Value& value, const std::vector<Value>& rows) {
 
 }  // namespace
 
-glm::dmat4 read_transform(const Value& value) {
+glm::dmat4 read_transform(const Value& value, bool exact) {
   const std::vector<Value> elements = value.elements();
   glm::dmat4 transform(1.0);
   if (!elements.empty() && elements.front().is_array())
-    transform = read_matrix(value, elements);
+    transform = read_matrix(value, elements, exact);
   else
-    for (const Value& step : elements) transform = read_step(step) * transform;
+    for (const Value& step : elements) transform = read_step(step, exact) * transform;
   const double volume = glm::determinant(glm::dmat3(transform));
   if (!(std::abs(volume) > 0) || !std::isfinite(volume)) value.fail("must not flatten what it transforms");
   return transform;

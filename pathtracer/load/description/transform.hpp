@@ -9,6 +9,7 @@ namespace tandem::pathtracer::description {
 
 /// An affine map that can be inverted: a list of {"translate": [x, y, z]}, {"rotate": degrees, "axis": [x, y, z]} and
 /// {"scale": s or [x, y, z]}, applied in this order; or the three or four rows of a matrix. Throws Error.
-glm::dmat4 read_transform(const Value& value);
+/// @param exact numbers are as written, not rounded to floats
+glm::dmat4 read_transform(const Value& value, bool exact);
 
 }  // namespace tandem::pathtracer::description

@@ -26,12 +26,14 @@ void read_choice(const Object& object, const std::string& key, std::optional<T>&
 
 }  // namespace
 
-Camera read_camera(const Value& value) {
+Camera read_camera(const Value& value, const glm::dvec3& origin) {
   Camera camera;
   camera.kind = type_of<CameraKind>(value, camera_names(), "type", CameraKind::perspective);
   const Object object(value, keys_of(camera.kind));
-  camera.position = object.require("position").vector(any_length);
-  camera.target = object.require("target").vector(any_length);
+  const glm::dvec3 position = object.require("position").double_vector(any_length);
+  const glm::dvec3 target = object.require("target").double_vector(any_length);
+  camera.position = glm::vec3(position - origin);
+  camera.target = glm::vec3(target - origin);
   object.read("up", camera.up, &Value::direction, any_length);
   object.read("motion", camera.motion, &Value::vector, any_length);
   if (camera.kind == CameraKind::perspective) {
@@ -41,8 +43,12 @@ Camera read_camera(const Value& value) {
   }
   if (camera.kind == CameraKind::orthographic) object.read("height", camera.height, &Value::number, positive_length);
   try {
+    // Where floats are coarse the two may coincide until the scene has its origin.
+    Camera centred = camera;
+    centred.position = glm::vec3(0);
+    centred.target = glm::vec3(target - position);
     RenderConstants constants;
-    set_camera(constants, camera, 1, 1);
+    set_camera(constants, centred, 1, 1);
   } catch (const Error& error) {
     value.fail(fmt::format("cannot be used: {}", error.what()));
   }

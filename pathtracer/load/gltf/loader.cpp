@@ -158,8 +158,9 @@ void fill_normals(Scene& scene) {
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& path) {
+Scene load_gltf(const std::filesystem::path& path, const glm::dvec3& origin) {
   Reading reading;
+  reading.scene.origin = origin;
   reading.document = read_gltf(path);
   reading.scene.name = path.filename().string();
   reading.materials = read_gltf_materials(reading.document, reading.scene);
@@ -168,7 +169,8 @@ Scene load_gltf(const std::filesystem::path& path) {
     reading.scene.materials.push_back(colored_material(reading.materials[i], glm::vec4(1)));
     reading.scene.material_names.push_back(reading.materials[i].name);
   }
-  for (const GltfNode& node : place_gltf_nodes(reading.document)) {
+  for (GltfNode& node : place_gltf_nodes(reading.document)) {
+    node.transform[3] -= glm::dvec4(origin, 0);
     if (node.source->mesh >= 0) add_mesh(reading, node);
     if (node.source->camera >= 0) add_camera(reading, node);
     if (const tinygltf::Value* light = gltf_extension(node.source->extensions, "KHR_lights_punctual"))

@@ -12,6 +12,7 @@ namespace tandem::pathtracer {
 /// of range, an accessor beyond its buffer, a coordinate that is not a finite number, nodes in a circle, an extension
 /// that the file requires and Tandem lacks, no triangles. What is merely ignored becomes a warning of the scene, one
 /// for each kind.
-Scene load_gltf(const std::filesystem::path& path);
+/// @param origin point of the file that is to be 0,0,0 of the scene
+Scene load_gltf(const std::filesystem::path& path, const glm::dvec3& origin = glm::dvec3(0));
 
 }  // namespace tandem::pathtracer

@@ -131,7 +131,12 @@ PunctualLight read_gltf_light(GltfDocument& document, int index, const GltfNode&
   }
   light.position = glm::vec3(node.transform[3]);
   light.direction = glm::vec3(direction(document, node, {0, 0, -1}));
-  light.radiance = glm::vec3(gltf_number(document, source.intensity, 0, unbounded, name, "intensity"));
+  // Blender writes watts times 683 lumens (CIE's definition at 555 nm) and divides by it when it reads; viewers that
+  // take the numbers as they are, the Khronos viewer among them, suit files of other origin.
+  constexpr double lumens_per_watt = 683;
+  const bool by_blender = document.model.asset.generator.find("Blender") != std::string::npos;
+  const double unit = by_blender ? lumens_per_watt : 1;
+  light.radiance = glm::vec3(gltf_number(document, source.intensity / unit, 0, unbounded, name, "intensity"));
   if (!source.color.empty()) {
     if (source.color.size() != 3) throw gltf_error(document, name, "its color does not have 3 numbers");
     for (int i = 0; i < 3; ++i)

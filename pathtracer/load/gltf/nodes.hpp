@@ -25,7 +25,8 @@ std::vector<GltfNode> place_gltf_nodes(const GltfDocument& document);
 /// The camera of a node, in world space. Throws Error for one that sees nothing.
 Camera read_gltf_camera(const GltfDocument& document, const GltfNode& node);
 
-/// The light `index` of KHR_lights_punctual at a node. Candela and lux count as radiometric units with factor 1.
+/// The light `index` of KHR_lights_punctual at a node. Candela and lux count as radiometric units with factor
+/// 1, or 1/683 in a file that Blender has written.
 PunctualLight read_gltf_light(GltfDocument& document, int index, const GltfNode& node);
 
 }  // namespace tandem::pathtracer

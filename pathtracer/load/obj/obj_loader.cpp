@@ -61,6 +61,7 @@ struct Reading {
   WavefrontText* text = nullptr;
   Scene scene;  ///< its name, materials, textures and warnings
   std::vector<glm::vec3> positions;
+  glm::dvec3 read_position{0};  ///< of the vertex that is being read, as exactly as the file has it
   std::map<std::size_t, UnusableVertex> unusable_positions;  ///< by index
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> texture_coordinates;
@@ -89,6 +90,7 @@ std::string usable_position(Reading& reading, std::string_view text, const State
     else if (std::abs(value) > largest_coordinate)
       why = fmt::format("the vertex coordinate '{}' is beyond {:g}, the farthest that rays reach", shortened(word),
                         largest_coordinate);
+    reading.read_position[axis] = value;
   }
   if (why.empty()) return std::string(text);
   reading.unusable_positions.emplace(reading.positions.size(), UnusableVertex{reading.text->line(), why});
@@ -175,7 +177,10 @@ void parse(Reading& reading) {
     if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
       reading.unusable_positions.emplace(
           reading.positions.size(), UnusableVertex{reading.text->line(), "a vertex coordinate has too many digits"});
-    reading.positions.emplace_back(x, y, z);
+    if (reading.scene.origin == glm::dvec3(0))
+      reading.positions.emplace_back(x, y, z);
+    else
+      reading.positions.emplace_back(reading.read_position - reading.scene.origin);
   };
   callbacks.normal_cb = [](void* data, float x, float y, float z) {
     static_cast<Reading*>(data)->normals.emplace_back(x, y, z);
@@ -331,8 +336,9 @@ std::size_t assemble(Reading& reading) {
 
 }  // namespace
 
-Scene load_obj(const std::filesystem::path& path, const ObjOptions& options) {
+Scene load_obj(const std::filesystem::path& path, const ObjOptions& options, const glm::dvec3& origin) {
   Reading reading;
+  reading.scene.origin = origin;
   reading.scene.name = path.filename().string();
   WavefrontText text(path, [&](std::string_view statement) { return filter(reading, statement); });
   reading.text = &text;

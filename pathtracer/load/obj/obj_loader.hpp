@@ -16,6 +16,8 @@ struct ObjOptions {
 /// understood and how). Throws Error, naming file and line, for what cannot be meant: a missing or truncated file, a
 /// missing MTL file or texture, a coordinate that is not a finite number, an index out of range, no triangles, a
 /// dielectric without index of refraction. What is merely ignored becomes a warning of the scene.
-Scene load_obj(const std::filesystem::path& path, const ObjOptions& options = {});
+/// @param origin point of the file that is to be 0,0,0 of the scene
+Scene load_obj(const std::filesystem::path& path, const ObjOptions& options = {},
+               const glm::dvec3& origin = glm::dvec3(0));
 
 }  // namespace tandem::pathtracer
