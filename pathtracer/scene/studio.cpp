@@ -49,22 +49,21 @@ OwnLight own_light(const Scene& scene) {
 
 void add_studio(Scene& scene) {
   constexpr std::uint32_t width = 64, height = 32;
-  TextureImage image{
-      .name = "studio", .format = TexelFormat::float32, .width = width, .height = height, .texels = {}};
+  TextureImage image{.name = "studio", .format = TexelFormat::float32, .width = width, .height = height, .texels = {}};
   for (std::uint32_t row = 0; row < height; ++row)
     for (std::uint32_t column = 0; column < width; ++column) {
       const double polar = pi * (row + 0.5) / height;
       const double azimuth = 2 * pi * ((column + 0.5) / width - 0.5);  // 0 at -z, growing towards +x
-      const float radiance = studio_radiance(
-          {std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)});
+      const float radiance =
+          studio_radiance({std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)});
       const float texel[4] = {radiance, radiance, radiance, 1};
       const auto* const bytes = reinterpret_cast<const std::byte*>(texel);
       image.texels.insert(image.texels.end(), bytes, bytes + sizeof texel);
     }
   if (scene.textures.empty()) scene.texture_coordinates.assign(scene.positions.size(), glm::vec2(0));
   scene.environment = Environment{.texture = add_texture(scene, std::move(image)), .radiance = glm::vec3(1)};
-  scene.textures.back().gpu.address = static_cast<std::uint32_t>(TextureAddress::repeat) |
-                                      static_cast<std::uint32_t>(TextureAddress::clamp) << 8;
+  scene.textures.back().gpu.address =
+      static_cast<std::uint32_t>(TextureAddress::repeat) | static_cast<std::uint32_t>(TextureAddress::clamp) << 8;
 }
 
 }  // namespace tandem::pathtracer

@@ -10,7 +10,7 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) print_error_line("warning: " + warning);
 }
 
-void print_note(const std::string& note) { print_line("note: " + note); }
+void print_note(const std::string& note) { print_error_line("note: " + note); }
 
 void print_message(const rhi::Message& message) {
   if (message.severity == rhi::Severity::info) return;
