@@ -50,7 +50,11 @@ void check_moved(const Scene& near, const Scene& far, const glm::dvec3& by) {
   REQUIRE(near.camera.has_value() == far.camera.has_value());
   if (!near.camera) return;
   same(near.camera->position, far.camera->position);
-  same(near.camera->target, far.camera->target);
+  // How far away the target is does not matter.
+  const auto view = [](const Camera& camera) {
+    return glm::normalize(glm::dvec3(camera.target) - glm::dvec3(camera.position));
+  };
+  CHECK(glm::length(view(*near.camera) - view(*far.camera)) < rounding);
 }
 
 }  // namespace
@@ -117,5 +121,5 @@ TEST_CASE("What is near 0, or large, keeps its coordinates") {
   CHECK(local_origin(scene({15, 0, 0}, 1)) == glm::dvec3(0));
   CHECK(local_origin(scene({0, 1e6f, 0}, 1e6f)) == glm::dvec3(0));
   CHECK(local_origin(scene({17, 15, -1000}, 1)) == glm::dvec3(17, 0, -1000));
-  CHECK(local_origin(scene({450010, 0, 0}, 60)) == glm::dvec3(450048, 0, 0));  // a multiple of 64
+  CHECK(local_origin(scene({450010, 0, 0}, 60)) == glm::dvec3(449984, 0, 0));  // a multiple of 64
 }
