@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "pathtracer/scene/scene.hpp"
 
@@ -11,7 +12,7 @@ namespace tandem::pathtracer {
 /// (load_description), .gltf and .glb (load_gltf).
 /// A scene far from 0 gets an origin of its own (scene/local_origin.hpp), and is read twice for it.
 /// Throws Error, naming the file, for an extension that is none of them and for what the format's loader refuses.
-/// @param options for the Wavefront files, those that a file of another format names included
-Scene load_scene(const std::filesystem::path& path, const ObjOptions& options = {});
+/// @param options for all files that are read
+Scene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 }  // namespace tandem::pathtracer

@@ -87,7 +87,8 @@ void light_up(pathtracer::Scene& scene, bool is_description) {
 compare::Job load_job(const RenderOptions& options) {
   compare::Job job;
   job.file = options.scene;
-  job.scene = pathtracer::load_scene(options.scene, {.allow_missing_mtl = options.allow_missing_mtl});
+  job.scene = pathtracer::load_scene(options.scene, {.allow_missing_mtl = options.allow_missing_mtl,
+                                                     .allow_outside_files = options.allow_outside_files});
   print_warnings(job.scene.warnings);
   say_origin(job.scene);
   treat_open_glass(job.scene, options.thin_panes);

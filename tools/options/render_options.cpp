@@ -26,8 +26,11 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   command.add_option("SCENE", options.scene, "Wavefront OBJ, glTF (.gltf, .glb) or scene description (.json)")
       ->required()
       ->type_name("FILE");
-  command.add_flag("--allow-missing-mtl", options.allow_missing_mtl,
-                   "Warn about a missing MTL file or texture and use a grey or opaque material instead of failing");
+  command.add_flag(
+      "--allow-missing-mtl", options.allow_missing_mtl,
+      "Warn about a missing MTL file or texture (of any format) and use a grey or opaque material instead of failing");
+  command.add_flag("--allow-outside-files", options.allow_outside_files,
+                   "Let the scene read files outside of its folder");
   command.add_flag("--thin-panes", options.thin_panes,
                    "Treat a dielectric whose mesh is not closed, such as a window of one face, as a thin pane");
   const auto group = [&](const char* name) { return command.add_option_group(name); };

@@ -30,6 +30,7 @@ struct RenderOptions {
   std::optional<pathtracer::TracingMode> trace;  ///< none: what the device has, ray queries first
   bool validation = false;                       ///< Vulkan validation layers
   bool thin_panes = false;                       ///< dielectrics whose mesh is not closed are sheets without thickness
+  bool allow_outside_files = false;              ///< scenes name files anywhere
   bool allow_missing_mtl = false;                ///< a missing MTL file or texture is a warning
 };
 

@@ -13,8 +13,8 @@
 
 namespace tandem::pathtracer {
 
-Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model,
-                       const glm::dvec3& origin) {
+Scene load_description(const std::filesystem::path& path, const LoadOptions& options,
+                       const description::ModelLoader& load_model, const glm::dvec3& origin) {
   using namespace description;
   const nlohmann::json document = json::parse(path);
   const std::filesystem::path folder = path.parent_path();
@@ -27,7 +27,7 @@ Scene load_description(const std::filesystem::path& path, const description::Mod
   Scene scene;
   scene.origin = origin;
   scene.name = path.filename().string();
-  Textures textures(root.get("textures"), folder, scene);
+  Textures textures(root.get("textures"), folder, options, scene);
   const NamedIndices media = read_media(root.get("media"), scene);
   const NamedIndices materials = read_materials(root.get("materials"), textures, media, scene);
   // What the description says itself comes before what a model of it says.
@@ -36,7 +36,7 @@ Scene load_description(const std::filesystem::path& path, const description::Mod
   if (const std::optional<Value> environment = root.get("environment"))
     scene.environment = read_environment(*environment, textures);
   if (const std::optional<Value> medium = root.get("medium")) scene.medium = media.find(*medium);
-  add_models(root.get("models"), folder, load_model, materials, scene);
+  add_models(root.get("models"), folder, options, load_model, materials, scene);
   add_spheres(root.get("spheres"), materials, scene);
   add_boxes(root.get("boxes"), materials, scene);
   add_quads(root.get("quads"), materials, scene);

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "pathtracer/load/description/geometry.hpp"
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {
@@ -12,9 +13,9 @@ namespace tandem::pathtracer {
 /// must be a positive number"), for members that are unknown, missing, given twice, of another type or out of range,
 /// for names that stand for nothing, for a scene without triangles and spheres, and for what the loaders of its models
 /// and images refuse.
-/// @param load_model reads the models that it names
+/// @param options with a folder (options_within)  @param load_model reads the models that it names
 /// @param origin point of the description that is to be 0,0,0 of the scene
-Scene load_description(const std::filesystem::path& path, const description::ModelLoader& load_model,
-                       const glm::dvec3& origin = glm::dvec3(0));
+Scene load_description(const std::filesystem::path& path, const LoadOptions& options,
+                       const description::ModelLoader& load_model, const glm::dvec3& origin = glm::dvec3(0));
 
 }  // namespace tandem::pathtracer

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "pathtracer/load/description/transform.hpp"
+#include "pathtracer/load/file_access.hpp"
 #include "pathtracer/scene/merge.hpp"
 
 namespace tandem::pathtracer::description {
@@ -75,13 +76,14 @@ glm::vec3 read_point(const Value& value, const Scene& scene) {
   return glm::vec3(value.double_vector(any_length) - scene.origin);
 }
 
-void add_models(const std::optional<Value>& list, const std::filesystem::path& folder, const ModelLoader& load_model,
-                const NamedIndices& materials, Scene& scene) {
+void add_models(const std::optional<Value>& list, const std::filesystem::path& folder, const LoadOptions& options,
+                const ModelLoader& load_model, const NamedIndices& materials, Scene& scene) {
   std::map<std::filesystem::path, Scene> loaded;  // a file that is placed twice is read once
   for (const Value& value : elements_of(list)) {
     const Object object(value, {"file", "transform", "materials"});
     const Value file = object.require("file");
     const std::filesystem::path path = folder / file.text();
+    if (!may_read(path, options)) file.fail(fmt::format("cannot be read: {}", outside_sentence(path)));
     if (path.extension() == ".json") file.fail("must be a model, not another description");
     const glm::dmat4 transform = transform_of(object, scene);
     if (!loaded.contains(path)) {

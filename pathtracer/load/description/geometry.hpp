@@ -7,6 +7,7 @@
 #include "base/json_value.hpp"
 #include "pathtracer/load/description/materials.hpp"
 #include "pathtracer/load/description/ranges.hpp"
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer::description {
@@ -17,9 +18,10 @@ glm::vec3 read_point(const Value& value, const Scene& scene);
 /// Reads a model: any scene file that is not a description itself.
 using ModelLoader = std::function<Scene(const std::filesystem::path&)>;
 
-/// Adds the files that "models" lists, relative to `folder`. Throws Error, also for what their loaders refuse.
-void add_models(const std::optional<Value>& list, const std::filesystem::path& folder, const ModelLoader& load_model,
-                const NamedIndices& materials, Scene& scene);
+/// Adds the files that "models" lists, relative to `folder`, where `options` allow them. Throws Error, also for what
+/// their loaders refuse.
+void add_models(const std::optional<Value>& list, const std::filesystem::path& folder, const LoadOptions& options,
+                const ModelLoader& load_model, const NamedIndices& materials, Scene& scene);
 
 /// Add what the lists of these names describe. Throw Error.
 void add_spheres(const std::optional<Value>& list, const NamedIndices& materials, Scene& scene);

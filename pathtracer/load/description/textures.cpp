@@ -4,6 +4,8 @@
 
 #include <glm/trigonometric.hpp>
 
+#include "pathtracer/load/file_access.hpp"
+
 namespace tandem::pathtracer::description {
 namespace {
 
@@ -71,8 +73,9 @@ std::vector<std::string> keys_of(TextureKind kind) {
 
 }  // namespace
 
-Textures::Textures(const std::optional<Value>& definitions, std::filesystem::path folder, Scene& scene)
-    : folder_(std::move(folder)), scene_(&scene) {
+Textures::Textures(const std::optional<Value>& definitions, std::filesystem::path folder, const LoadOptions& options,
+                   Scene& scene)
+    : folder_(std::move(folder)), options_(options), scene_(&scene) {
   if (!definitions) return;
   for (const auto& [name, value] : definitions->members()) definitions_.emplace(name, read_definition(value));
 }
@@ -108,6 +111,7 @@ Textures::Definition Textures::read_definition(const Value& value) {
 
 std::uint32_t Textures::image(const Value& file, TextureEncoding encoding) {
   const std::filesystem::path path = folder_ / file.text();
+  if (!may_read(path, options_)) file.fail(fmt::format("cannot be read: {}", outside_sentence(path)));
   const auto [entry, is_new] =
       images_.try_emplace({path.string(), encoding}, static_cast<std::uint32_t>(scene_->images.size()));
   if (is_new) scene_->images.push_back(load_texture_image(path, encoding));

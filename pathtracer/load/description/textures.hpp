@@ -10,6 +10,7 @@
 #include "base/json_value.hpp"
 #include "pathtracer/image/texture_image.hpp"
 #include "pathtracer/load/description/ranges.hpp"
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer::description {
@@ -28,8 +29,10 @@ class Textures {
  public:
   /// Reads the definitions, but no image yet. Throws Error.
   /// @param folder that file names are relative to
+  /// @param options say which files may be read
   /// @param scene where textures and images are added; must outlive this object
-  Textures(const std::optional<Value>& definitions, std::filesystem::path folder, Scene& scene);
+  Textures(const std::optional<Value>& definitions, std::filesystem::path folder, const LoadOptions& options,
+           Scene& scene);
 
   /// The index in the scene of the texture that the value names. Throws Error when there is none of this name, or its
   /// image cannot be read.
@@ -48,6 +51,7 @@ class Textures {
   std::uint32_t image(const Value& file, TextureEncoding encoding);
 
   std::filesystem::path folder_;
+  LoadOptions options_;
   Scene* scene_;
   std::map<std::string, Definition> definitions_;
   std::map<std::tuple<std::string, TextureEncoding>, std::uint32_t> images_;                   ///< by path

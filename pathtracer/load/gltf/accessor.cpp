@@ -39,6 +39,8 @@ std::size_t component_count(int type) {
       return 3;
     case TINYGLTF_TYPE_VEC4:
       return 4;
+    case TINYGLTF_TYPE_MAT4:
+      return 16;
     default:
       return 0;
   }
@@ -107,16 +109,18 @@ std::uint32_t decode_index(const unsigned char* bytes, int type) {
   }
 }
 
-std::vector<std::uint32_t> read_indices(const GltfDocument& document, const Elements& source, std::size_t count,
-                                        int type, std::size_t limit, std::string_view owner) {
+std::vector<std::uint32_t> read_indices(const Elements& source, std::size_t count, int type) {
   std::vector<std::uint32_t> indices(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    indices[i] = decode_index(source.first + i * source.stride, type);
+  for (std::size_t i = 0; i < count; ++i) indices[i] = decode_index(source.first + i * source.stride, type);
+  return indices;
+}
+
+void check_indices(const GltfDocument& document, const std::vector<std::uint32_t>& indices, std::size_t limit,
+                   std::string_view owner) {
+  for (std::size_t i = 0; i < indices.size(); ++i)
     if (indices[i] >= limit)
       throw gltf_error(document, owner,
                        fmt::format("index {} is {}, but there are only {} elements", i, indices[i], limit));
-  }
-  return indices;
 }
 
 bool is_index_type(int type) {
@@ -124,26 +128,32 @@ bool is_index_type(int type) {
          type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
 }
 
-/// Replaces the elements that the sparse part of an accessor names.
-void substitute(const GltfDocument& document, const tinygltf::Accessor& accessor, std::string_view owner,
-                GltfValues& result) {
-  const std::size_t size = component_size(accessor.componentType);
+/// What the sparse part of an accessor puts where.
+struct Substitutes {
+  std::vector<std::uint32_t> places;
+  Elements values;
+};
+
+Substitutes substitutes(const GltfDocument& document, const tinygltf::Accessor& accessor, std::size_t element_size,
+                        std::string_view owner) {
   const auto count = static_cast<std::size_t>(accessor.sparse.count);
   const int index_type = accessor.sparse.indices.componentType;
-  if (accessor.sparse.count < 0 || count > result.count || !is_index_type(index_type))
+  if (accessor.sparse.count < 0 || count > accessor.count || !is_index_type(index_type))
     throw gltf_error(document, owner, "its sparse part has a wrong count or type of index");
   const Elements index_source = elements(document, accessor.sparse.indices.bufferView,
                                          static_cast<std::uint64_t>(accessor.sparse.indices.byteOffset), count,
                                          component_size(index_type), owner);
-  const Elements values =
-      elements(document, accessor.sparse.values.bufferView,
-               static_cast<std::uint64_t>(accessor.sparse.values.byteOffset), count, size * result.components, owner);
-  const std::vector<std::uint32_t> indices =
-      read_indices(document, index_source, count, index_type, result.count, owner);
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t component = 0; component < result.components; ++component)
-      result.values[indices[i] * result.components + component] =
-          decode(values.first + i * values.stride + component * size, accessor.componentType, accessor.normalized);
+  Substitutes result{
+      .places = read_indices(index_source, count, index_type),
+      .values = elements(document, accessor.sparse.values.bufferView,
+                         static_cast<std::uint64_t>(accessor.sparse.values.byteOffset), count, element_size, owner)};
+  check_indices(document, result.places, accessor.count, owner);
+  return result;
+}
+
+void check_without_data(const GltfDocument& document, const tinygltf::Accessor& accessor, std::string_view owner) {
+  if (accessor.count > largest_empty_accessor)
+    throw gltf_error(document, owner, fmt::format("has {} elements and no data", accessor.count));
 }
 
 std::string accessor_name(int index, const tinygltf::Accessor& accessor) {
@@ -161,8 +171,7 @@ GltfValues gltf_vectors(const GltfDocument& document, int index, std::size_t lea
   if (size == 0 || result.components < least || result.components > most)
     throw gltf_error(document, name, fmt::format("is not of the type that {} needs", owner));
   if (accessor.bufferView < 0) {
-    if (accessor.count > largest_empty_accessor)
-      throw gltf_error(document, name, fmt::format("has {} elements and no data", accessor.count));
+    check_without_data(document, accessor, name);
     result.values.resize(result.count * result.components);
   } else {
     const Elements source =
@@ -173,7 +182,13 @@ GltfValues gltf_vectors(const GltfDocument& document, int index, std::size_t lea
         result.values.push_back(
             decode(source.first + i * source.stride + component * size, accessor.componentType, accessor.normalized));
   }
-  if (accessor.sparse.isSparse) substitute(document, accessor, name, result);
+  if (!accessor.sparse.isSparse) return result;
+  const Substitutes sparse = substitutes(document, accessor, size * result.components, name);
+  for (std::size_t i = 0; i < sparse.places.size(); ++i)
+    for (std::size_t component = 0; component < result.components; ++component)
+      result.values[sparse.places[i] * result.components + component] =
+          decode(sparse.values.first + i * sparse.values.stride + component * size, accessor.componentType,
+                 accessor.normalized);
   return result;
 }
 
@@ -181,11 +196,24 @@ std::vector<std::uint32_t> gltf_indices(const GltfDocument& document, int index,
                                         std::string_view owner) {
   const tinygltf::Accessor& accessor = gltf_at(document, document.model.accessors, index, "accessor", owner);
   const std::string name = accessor_name(index, accessor);
-  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType) || accessor.sparse.isSparse)
-    throw gltf_error(document, name, "does not hold plain unsigned integers, as indices must be");
-  const Elements source = elements(document, accessor.bufferView, accessor.byteOffset, accessor.count,
-                                   component_size(accessor.componentType), name);
-  return read_indices(document, source, accessor.count, accessor.componentType, limit, name);
+  if (accessor.type != TINYGLTF_TYPE_SCALAR || !is_index_type(accessor.componentType))
+    throw gltf_error(document, name, "does not hold unsigned integers, as indices must be");
+  const std::size_t size = component_size(accessor.componentType);
+  std::vector<std::uint32_t> indices;
+  if (accessor.bufferView < 0) {
+    check_without_data(document, accessor, name);
+    indices.resize(accessor.count);
+  } else {
+    indices = read_indices(elements(document, accessor.bufferView, accessor.byteOffset, accessor.count, size, name),
+                           accessor.count, accessor.componentType);
+  }
+  if (accessor.sparse.isSparse) {
+    const Substitutes sparse = substitutes(document, accessor, size, name);
+    for (std::size_t i = 0; i < sparse.places.size(); ++i)
+      indices[sparse.places[i]] = decode_index(sparse.values.first + i * sparse.values.stride, accessor.componentType);
+  }
+  check_indices(document, indices, limit, name);
+  return indices;
 }
 
 }  // namespace tandem::pathtracer

@@ -16,13 +16,13 @@ struct GltfValues {
   std::vector<float> values;   ///< count * components of them
 };
 
-/// Reads vectors of any component type, normalised integers as glTF 2.0 (section 3.11) decodes them, with sparse
-/// substitution. Throws Error, naming the accessor, when it is no vector of `least` to `most` components or reaches
-/// beyond its buffer view. @param owner what refers to the accessor
+/// Reads vectors, or matrices of 16 components, of any component type, normalised integers as glTF 2.0 (section 3.11)
+/// decodes them, with sparse substitution. Throws Error, naming the accessor, when it is no vector of `least` to `most`
+/// components or reaches beyond its buffer view. @param owner what refers to the accessor
 GltfValues gltf_vectors(const GltfDocument& document, int accessor, std::size_t least, std::size_t most,
                         std::string_view owner);
 
-/// Reads unsigned integers. Throws Error likewise, and where one is not below `limit`.
+/// Reads unsigned integers, with sparse substitution. Throws Error likewise, and where one is not below `limit`.
 std::vector<std::uint32_t> gltf_indices(const GltfDocument& document, int accessor, std::size_t limit,
                                         std::string_view owner);
 

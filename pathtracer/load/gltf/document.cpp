@@ -1,114 +1,95 @@
 #include "pathtracer/load/gltf/document.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/gltf/container.hpp"
+#include "pathtracer/load/gltf/schema.hpp"
+#include "pathtracer/load/gltf/uri.hpp"
 
 namespace tandem::pathtracer {
 namespace {
 
-constexpr std::array supported_extensions = {"KHR_lights_punctual",        "KHR_materials_emissive_strength",
-                                             "KHR_materials_ior",          "KHR_materials_specular",
-                                             "KHR_materials_transmission", "KHR_materials_unlit",
-                                             "KHR_mesh_quantization",      "KHR_texture_transform"};
+/// What tinygltf does not get to see: it reads files by itself, and takes indices without a buffer view for an error.
+struct Withheld {
+  nlohmann::json buffers, images;
+  std::vector<std::vector<int>> indices;  ///< of each primitive of each mesh, -1: none
+};
 
-/// Of objects in objects. tinygltf goes down into them by recursion.
-constexpr int deepest_nesting = 256;
-
-bool is_supported(const std::string& extension) {
-  return std::ranges::find(supported_extensions, extension) != supported_extensions.end();
+nlohmann::json taken(nlohmann::json& json, const char* member) {
+  nlohmann::json result = json.value(member, nlohmann::json::array());
+  json.erase(member);
+  return result;
 }
 
-std::vector<unsigned char> read_bytes(const std::filesystem::path& path) {
-  std::error_code status_error;
-  if (!std::filesystem::is_regular_file(path, status_error))
-    throw Error(fmt::format("cannot read '{}': there is no such file", path.string()));
-  std::ifstream file(path, std::ios::binary);
-  std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) throw Error(fmt::format("cannot read '{}'", path.string()));
-  if (bytes.empty()) throw Error(fmt::format("'{}' is empty", path.string()));
-  if (bytes.size() > 0xffffffffu) throw Error(fmt::format("'{}' is larger than 4 GiB", path.string()));
-  return bytes;
-}
-
-std::uint64_t word_at(std::span<const unsigned char> bytes, std::size_t offset) {
-  return bytes[offset] | std::uint64_t{bytes[offset + 1]} << 8 | std::uint64_t{bytes[offset + 2]} << 16 |
-         std::uint64_t{bytes[offset + 3]} << 24;
-}
-
-bool is_binary(std::span<const unsigned char> bytes) {
-  return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
-}
-
-/// The JSON of a binary file, after its chunks were found to be inside the file (glTF 2.0, section 4.4), which tinygltf
-/// does not check to the last byte.
-std::span<const unsigned char> binary_json(const std::string& path, std::span<const unsigned char> bytes) {
-  const auto fail = [&](std::string_view sentence) { return Error(fmt::format("{}: {}", path, sentence)); };
-  constexpr std::size_t header = 12, chunk_header = 8;
-  if (bytes.size() < header + chunk_header) throw fail("the binary glTF file is cut off in its header");
-  if (word_at(bytes, 4) != 2) throw fail(fmt::format("version {} of binary glTF is not 2", word_at(bytes, 4)));
-  if (word_at(bytes, 8) > bytes.size())
-    throw fail(fmt::format("the binary glTF file is cut off: {} bytes of {}", bytes.size(), word_at(bytes, 8)));
-  const std::uint64_t json_size = word_at(bytes, header);
-  const std::uint64_t json_end = header + chunk_header + json_size;
-  if (json_end > bytes.size()) throw fail("the JSON of the binary glTF file is cut off");
-  if (json_end + chunk_header <= bytes.size() &&
-      json_end + chunk_header + word_at(bytes, static_cast<std::size_t>(json_end)) > bytes.size())
-    throw fail("the data of the binary glTF file is cut off");
-  return bytes.subspan(header + chunk_header, static_cast<std::size_t>(json_size));
-}
-
-bool nests_too_deep(std::span<const unsigned char> json) {
-  int depth = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < json.size(); ++i) {
-    const unsigned char c = json[i];
-    if (in_string) {
-      if (c == '\\') ++i;
-      if (c == '"') in_string = false;
-    } else if (c == '"') {
-      in_string = true;
-    } else if (c == '{' || c == '[') {
-      if (++depth > deepest_nesting) return true;
-    } else if (c == '}' || c == ']') {
-      --depth;
+Withheld withhold(nlohmann::json& json) {
+  Withheld withheld{.buffers = taken(json, "buffers"), .images = taken(json, "images"), .indices = {}};
+  if (!json.contains("meshes")) return withheld;
+  for (nlohmann::json& mesh : json["meshes"]) {
+    withheld.indices.emplace_back();
+    for (nlohmann::json& primitive : mesh["primitives"]) {
+      withheld.indices.back().push_back(primitive.value("indices", -1));
+      primitive.erase("indices");
     }
   }
-  return false;
+  return withheld;
 }
 
-/// Called for each image: keeps the file as it is. One in a buffer view is read later, after that has been checked.
-bool keep_image(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
-                void*) {
-  if (image->bufferView < 0 && size > 0) image->image.assign(bytes, bytes + size);
-  return true;
-}
-
-void parse(GltfDocument& document, const std::filesystem::path& path, std::span<const unsigned char> bytes) {
+void parse(GltfDocument& document, const nlohmann::json& json) {
   tinygltf::TinyGLTF loader;
-  loader.SetImageLoader(keep_image, nullptr);
   std::string error, warning;
   bool parsed = false;
-  const auto size = static_cast<unsigned int>(bytes.size());
-  const std::string folder = path.parent_path().string();
+  const std::string text = json.dump();
   try {
-    parsed = is_binary(bytes)
-                 ? loader.LoadBinaryFromMemory(&document.model, &error, &warning, bytes.data(), size, folder)
-                 : loader.LoadASCIIFromString(&document.model, &error, &warning,
-                                              reinterpret_cast<const char*>(bytes.data()), size, folder);
-  } catch (const std::exception& exception) {
-    error = exception.what();
+    parsed = loader.LoadASCIIFromString(&document.model, &error, &warning, text.data(),
+                                        static_cast<unsigned int>(text.size()), "");
+  } catch (const std::exception&) {
+    parsed = false;
   }
   // What it only complains about may be right: it calls some optional properties missing.
   if (parsed) return;
   error = error.substr(0, error.find('\n'));
   throw Error(fmt::format("{}: {}", document.path, error.empty() ? "not a glTF 2.0 file" : error));
+}
+
+void restore(GltfDocument& document, const Withheld& withheld) {
+  tinygltf::Model& model = document.model;
+  for (std::size_t i = 0; i < model.meshes.size() && i < withheld.indices.size(); ++i)
+    for (std::size_t k = 0; k < model.meshes[i].primitives.size() && k < withheld.indices[i].size(); ++k)
+      model.meshes[i].primitives[k].indices = withheld.indices[i][k];
+  for (const nlohmann::json& image : withheld.images) {
+    model.images.emplace_back();
+    model.images.back().name = image.value("name", "");
+    model.images.back().uri = image.value("uri", "");
+    model.images.back().bufferView = image.value("bufferView", -1);
+  }
+}
+
+/// The first bytes of a buffer, as many as it says; what follows them is padding (glTF 2.0, section 4.4.3.3). None for
+/// a buffer without data, as that of EXT_meshopt_compression for readers without the extension.
+void load_buffers(GltfDocument& document, const nlohmann::json& buffers, std::vector<unsigned char>&& data) {
+  for (std::size_t i = 0; i < buffers.size(); ++i) {
+    tinygltf::Buffer& buffer = document.model.buffers.emplace_back();
+    buffer.name = buffers[i].value("name", "");
+    const std::string name = gltf_name("buffer", i, buffer.name);
+    const auto size = buffers[i]["byteLength"].get<std::uint64_t>();
+    if (buffers[i].contains("uri")) {
+      buffer.data = gltf_resource(document, buffers[i]["uri"].get<std::string>(), name);
+    } else if (i == 0 && !data.empty()) {
+      buffer.data = std::move(data);
+    } else {
+      continue;
+    }
+    if (buffer.data.size() < size)
+      throw gltf_error(document, name,
+                       fmt::format("has {} bytes and not the {} that it promises", buffer.data.size(), size));
+    buffer.data.resize(static_cast<std::size_t>(size));
+  }
 }
 
 void add_names(std::set<std::string>& names, const tinygltf::ExtensionMap& extensions) {
@@ -117,10 +98,6 @@ void add_names(std::set<std::string>& names, const tinygltf::ExtensionMap& exten
 
 void check_extensions(GltfDocument& document) {
   const tinygltf::Model& model = document.model;
-  for (const std::string& extension : model.extensionsRequired)
-    if (!is_supported(extension))
-      throw Error(
-          fmt::format("{}: the file requires the extension {}, which is not supported", document.path, extension));
   // Files do not always declare what they use.
   std::set<std::string> used(model.extensionsUsed.begin(), model.extensionsUsed.end());
   add_names(used, model.extensions);
@@ -130,24 +107,45 @@ void check_extensions(GltfDocument& document) {
   for (const tinygltf::Mesh& mesh : model.meshes)
     for (const tinygltf::Primitive& primitive : mesh.primitives) add_names(used, primitive.extensions);
   for (const std::string& extension : used)
-    if (!is_supported(extension)) gltf_warn(document, fmt::format("the extension {} has no effect", extension));
+    if (!is_gltf_extension_supported(extension))
+      gltf_warn(document, fmt::format("the extension {} has no effect", extension));
 }
 
 }  // namespace
 
-GltfDocument read_gltf(const std::filesystem::path& path) {
+GltfDocument read_gltf(const std::filesystem::path& path, const LoadOptions& options) {
   GltfDocument document;
   document.path = path.string();
-  const std::vector<unsigned char> bytes = read_bytes(path);
-  const std::span<const unsigned char> json =
-      is_binary(bytes) ? binary_json(document.path, bytes) : std::span<const unsigned char>(bytes);
-  if (nests_too_deep(json))
-    throw Error(fmt::format("{}: objects are nested deeper than {} times", document.path, deepest_nesting));
-  parse(document, path, bytes);
-  if (!document.model.asset.version.starts_with("2."))
-    throw Error(fmt::format("{}: version '{}' of glTF is not 2.0", document.path, document.model.asset.version));
+  document.options = options_within(path, options);
+  GltfContainer container = read_gltf_container(path);
+  check_gltf_header(document.path, container.json);
+  check_gltf_members(document.path, container.json);
+  document.has_animations = !taken(container.json, "animations").empty();
+  const Withheld withheld = withhold(container.json);
+  parse(document, container.json);
+  restore(document, withheld);
+  load_buffers(document, withheld.buffers, std::move(container.data));
   check_extensions(document);
   return document;
+}
+
+std::vector<unsigned char> gltf_resource(const GltfDocument& document, const std::string& uri, std::string_view owner) {
+  try {
+    if (auto bytes = data_uri_bytes(uri)) return std::move(*bytes);
+  } catch (const Error& error) {
+    throw gltf_error(document, owner, error.what());
+  }
+  return read_gltf_bytes(gltf_resource_path(document, uri, owner));
+}
+
+std::filesystem::path gltf_resource_path(const GltfDocument& document, const std::string& uri, std::string_view owner) {
+  if (const std::string_view scheme = uri_scheme(uri); !scheme.empty())
+    throw gltf_error(document, owner, fmt::format("files by {} are not fetched", scheme));
+  const std::string name = percent_decoded(uri);
+  if (name.empty() || name.find('\0') != std::string::npos) throw gltf_error(document, owner, "its uri names no file");
+  const std::filesystem::path path = std::filesystem::path(document.path).parent_path() / name;
+  if (!may_read(path, document.options)) throw gltf_error(document, owner, outside_sentence(name));
+  return path;
 }
 
 std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name) {
@@ -187,6 +185,7 @@ std::span<const unsigned char> gltf_view(const GltfDocument& document, int buffe
   const tinygltf::BufferView& view = gltf_at(document, document.model.bufferViews, buffer_view, "buffer view", owner);
   const std::string name = gltf_name("buffer view", static_cast<std::size_t>(buffer_view), view.name);
   const tinygltf::Buffer& buffer = gltf_at(document, document.model.buffers, view.buffer, "buffer", name);
+  if (buffer.data.empty()) throw gltf_error(document, name, fmt::format("buffer {} has no data", view.buffer));
   if (view.byteOffset > buffer.data.size() || view.byteLength > buffer.data.size() - view.byteOffset)
     throw gltf_error(document, name, fmt::format("ends beyond its buffer of {} bytes", buffer.data.size()));
   return std::span(buffer.data).subspan(view.byteOffset, view.byteLength);

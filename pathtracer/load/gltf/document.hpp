@@ -11,19 +11,30 @@
 #include <tiny_gltf.h>
 
 #include "base/error.hpp"
+#include "pathtracer/load/load_options.hpp"
 
 namespace tandem::pathtracer {
 
-/// A parsed glTF file. Its indices, numbers and buffers are as the file gives them: nothing but the syntax is checked.
+/// A parsed glTF file. The types of its members are checked (schema.hpp); its indices and buffers are as the file gives
+/// them.
 struct GltfDocument {
   std::string path;  ///< for messages
-  tinygltf::Model model;
+  LoadOptions options;
+  tinygltf::Model model;  ///< without animations; an image with a URI is not read yet
+  bool has_animations = false;
   std::vector<std::string> warnings;  ///< each sentence once
 };
 
-/// Throws Error for a file that is missing, is no glTF, lacks one of its buffers or requires an extension that Tandem
-/// does not have. An image with a URI holds the bytes of its file (none where that is missing).
-GltfDocument read_gltf(const std::filesystem::path& path);
+/// Throws Error for a file that is missing, is no glTF, has a member of a wrong type, lacks one of its buffers or
+/// requires an extension that Tandem does not have.
+GltfDocument read_gltf(const std::filesystem::path& path, const LoadOptions& options);
+
+/// The bytes that a URI stands for: those of a data URI, or of a file beside the document. Throws Error, naming
+/// `owner`, for what is neither, for a file that is not there and for one that the options do not allow (may_read).
+std::vector<unsigned char> gltf_resource(const GltfDocument& document, const std::string& uri, std::string_view owner);
+
+/// The file that a URI names. Throws Error likewise, but for one that is not there.
+std::filesystem::path gltf_resource_path(const GltfDocument& document, const std::string& uri, std::string_view owner);
 
 /// "mesh 2 ('vase')": how messages call an object.
 std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name);

@@ -14,6 +14,7 @@
 #include "pathtracer/load/gltf/materials.hpp"
 #include "pathtracer/load/gltf/meshes.hpp"
 #include "pathtracer/load/gltf/nodes.hpp"
+#include "pathtracer/load/gltf/skins.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -27,7 +28,9 @@ struct Reading {
   GltfDocument document;
   Scene scene;
   std::vector<GltfMaterial> materials;
-  std::map<int, std::vector<GltfPrimitive>> meshes;                               ///< those that nodes have used so far
+  std::vector<GltfNode> nodes;
+  /// Those that nodes have used so far, with their weights of morph targets.
+  std::map<std::pair<int, std::vector<double>>, std::vector<GltfPrimitive>> meshes;
   std::map<std::pair<std::size_t, std::array<float, 4>>, std::uint32_t> colored;  ///< index into the scene's materials
 };
 
@@ -87,8 +90,8 @@ bool is_smooth(const Scene& scene, const GpuTriangle& triangle) {
 }
 
 glm::vec3 checked_position(const Reading& reading, const GltfNode& node, const GltfPrimitive& primitive,
-                           std::uint32_t vertex) {
-  const glm::dvec3 position(node.transform * glm::dvec4(glm::dvec3(primitive.positions[vertex]), 1));
+                           const glm::dmat4& transform, std::uint32_t vertex) {
+  const glm::dvec3 position(transform * glm::dvec4(glm::dvec3(primitive.positions[vertex]), 1));
   for (int axis = 0; axis < 3; ++axis)
     if (!(std::abs(position[axis]) <= largest_coordinate))
       throw gltf_error(reading.document, primitive.name,
@@ -98,9 +101,24 @@ glm::vec3 checked_position(const Reading& reading, const GltfNode& node, const G
 }
 
 /// Adds the triangles of a primitive at a node, with the vertices that they use.
-void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& primitive) {
+/// @param joints of its skin; none: it has no skin
+void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& primitive,
+                   const std::vector<glm::dmat4>& joints) {
   Scene& scene = reading.scene;
-  const NormalTransform to_world{glm::dmat3(node.transform)};
+  std::vector<glm::dmat4> transforms;  // of each vertex of a skin
+  if (!joints.empty()) {
+    if (primitive.joints.empty())
+      gltf_warn(reading.document, fmt::format("{} has no joints, so its skin has no effect", primitive.name));
+    else
+      transforms = gltf_vertex_transforms(reading.document, primitive, joints);
+  }
+  const auto transform_of = [&](std::uint32_t corner) -> const glm::dmat4& {
+    return transforms.empty() ? node.transform : transforms[corner];
+  };
+  const NormalTransform of_node{glm::dmat3(node.transform)};
+  const auto to_world = [&](std::uint32_t corner) {
+    return transforms.empty() ? of_node : NormalTransform(glm::dmat3(transforms[corner]));
+  };
   const std::uint32_t material = scene_material(reading, primitive);
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> vertices(primitive.positions.size(), unused);
@@ -108,13 +126,14 @@ void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& 
     throw gltf_error(reading.document, node.name, "the scene has more vertices than 32 bits count");
   for (const std::array<std::uint32_t, 3>& corners : primitive.triangles) {
     GpuTriangle triangle{.vertices = {}, .material = material};
+    const bool is_mirrored = to_world(corners[0]).is_mirror();
     for (std::size_t i = 0; i < 3; ++i) {
       // A mirrored triangle is seen counter-clockwise from outside again.
-      const std::uint32_t corner = corners[to_world.is_mirror() && i > 0 ? 3 - i : i];
+      const std::uint32_t corner = corners[is_mirrored && i > 0 ? 3 - i : i];
       if (vertices[corner] == unused) {
         vertices[corner] = static_cast<std::uint32_t>(scene.positions.size());
-        scene.positions.push_back(checked_position(reading, node, primitive, corner));
-        scene.normals.push_back(primitive.normals.empty() ? glm::vec3(0) : to_world(primitive.normals[corner]));
+        scene.positions.push_back(checked_position(reading, node, primitive, transform_of(corner), corner));
+        scene.normals.push_back(primitive.normals.empty() ? glm::vec3(0) : to_world(corner)(primitive.normals[corner]));
         scene.texture_coordinates.push_back(
             primitive.texture_coordinates.empty() ? glm::vec2(0, 1) : primitive.texture_coordinates[corner]);
       }
@@ -127,17 +146,21 @@ void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& 
 
 void add_mesh(Reading& reading, const GltfNode& node) {
   const int index = node.source->mesh;
-  auto entry = reading.meshes.find(index);
+  const std::pair key{index, node.source->weights};
+  auto entry = reading.meshes.find(key);
   if (entry == reading.meshes.end())
-    entry = reading.meshes.emplace(index, read_gltf_mesh(reading.document, reading.materials, index, node.name)).first;
-  for (const GltfPrimitive& primitive : entry->second) add_primitive(reading, node, primitive);
-  for (const double weight : node.source->weights)
-    if (weight != 0) gltf_warn(reading.document, "morph targets have no effect");
+    entry =
+        reading.meshes.emplace(key, read_gltf_mesh(reading.document, reading.materials, index, key.second, node.name))
+            .first;
+  std::vector<glm::dmat4> joints;
   if (node.source->skin >= 0)
-    gltf_warn(reading.document, "skins have no effect: meshes keep the pose they are stored in");
+    joints = gltf_joint_matrices(reading.document, reading.nodes, node.source->skin, node.name);
+  for (const GltfPrimitive& primitive : entry->second) add_primitive(reading, node, primitive, joints);
 }
 
 void add_camera(Reading& reading, const GltfNode& node) {
+  if (is_hidden(node))
+    return gltf_warn(reading.document, fmt::format("the camera of {} is hidden: its node is scaled to 0", node.name));
   if (reading.scene.camera)
     return gltf_warn(reading.document, "of several cameras the first in the order of the nodes counts");
   reading.scene.camera = read_gltf_camera(reading.document, node);
@@ -147,6 +170,8 @@ void add_light(Reading& reading, const GltfNode& node, const tinygltf::Value& ex
   const tinygltf::Value* index = gltf_member(extension, "light");
   if (index == nullptr || !index->IsInt())
     throw gltf_error(reading.document, node.name, "its KHR_lights_punctual names no light");
+  if (is_hidden(node))
+    return gltf_warn(reading.document, fmt::format("the light of {} is hidden: its node is scaled to 0", node.name));
   reading.scene.lights.push_back(read_gltf_light(reading.document, index->GetNumberAsInt(), node));
 }
 
@@ -158,10 +183,10 @@ void fill_normals(Scene& scene) {
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& path, const glm::dvec3& origin) {
+Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options, const glm::dvec3& origin) {
   Reading reading;
   reading.scene.origin = origin;
-  reading.document = read_gltf(path);
+  reading.document = read_gltf(path, options);
   reading.scene.name = path.filename().string();
   reading.materials = read_gltf_materials(reading.document, reading.scene);
   // But the last, that of primitives without one, which comes when it is needed.
@@ -169,14 +194,16 @@ Scene load_gltf(const std::filesystem::path& path, const glm::dvec3& origin) {
     reading.scene.materials.push_back(colored_material(reading.materials[i], glm::vec4(1)));
     reading.scene.material_names.push_back(reading.materials[i].name);
   }
-  for (GltfNode& node : place_gltf_nodes(reading.document)) {
-    node.transform[3] -= glm::dvec4(origin, 0);
-    if (node.source->mesh >= 0) add_mesh(reading, node);
+  reading.nodes = place_gltf_nodes(reading.document);
+  for (GltfNode& node : reading.nodes) node.transform[3] -= glm::dvec4(origin, 0);
+  for (const GltfNode& node : reading.nodes) {
+    const bool is_skinned = node.source->skin >= 0;  // its own transform does not count
+    if (node.source->mesh >= 0 && (is_skinned || !is_hidden(node))) add_mesh(reading, node);
     if (node.source->camera >= 0) add_camera(reading, node);
     if (const tinygltf::Value* light = gltf_extension(node.source->extensions, "KHR_lights_punctual"))
       add_light(reading, node, *light);
   }
-  if (!reading.document.model.animations.empty()) gltf_warn(reading.document, "animations are not played");
+  if (reading.document.has_animations) gltf_warn(reading.document, "animations are not played");
   if (reading.scene.triangles.empty()) throw Error(fmt::format("'{}' holds no triangles", path.string()));
   fill_normals(reading.scene);
   if (reading.scene.textures.empty()) reading.scene.texture_coordinates.clear();

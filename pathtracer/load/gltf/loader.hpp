@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {
@@ -13,6 +14,7 @@ namespace tandem::pathtracer {
 /// that the file requires and Tandem lacks, no triangles. What is merely ignored becomes a warning of the scene, one
 /// for each kind.
 /// @param origin point of the file that is to be 0,0,0 of the scene
-Scene load_gltf(const std::filesystem::path& path, const glm::dvec3& origin = glm::dvec3(0));
+Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options = {},
+                const glm::dvec3& origin = glm::dvec3(0));
 
 }  // namespace tandem::pathtracer

@@ -24,6 +24,8 @@ constexpr double largest = std::numeric_limits<float>::max();
 constexpr double unbounded = 1e30;
 /// glTF 2.0, appendix B: of dielectrics that do not give one.
 constexpr float default_ior = 1.5f;
+/// So large that (ior - 1) / (ior + 1) is 1 in float.
+constexpr float infinite_ior = 1e8f;
 
 float number(Reading& reading, double value, double high, std::string_view property) {
   return gltf_number(reading.document, value, 0, high, reading.owner, property);
@@ -147,6 +149,8 @@ void read_dielectric(Reading& reading, const tinygltf::Material& source) {
   GpuMaterial& material = reading.result.material;
   if (const tinygltf::Value* extension = gltf_extension(source.extensions, "KHR_materials_ior")) {
     material.ior = member(reading, *extension, "ior", double{default_ior}, 1e3);
+    // The extension's way to say that the index is infinite: then the specular colour alone is the reflectance.
+    if (material.ior == 0) material.ior = infinite_ior;
     if (material.ior < 1) {
       gltf_warn(reading.document,
                 fmt::format("{}: an index of refraction of {} counts as {}", reading.owner, material.ior, default_ior));

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "pathtracer/load/gltf/accessor.hpp"
+#include "pathtracer/load/gltf/morphs.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -53,10 +54,12 @@ std::vector<std::array<std::uint32_t, 3>> assemble(const GltfDocument& document,
   return triangles;
 }
 
-void read_normals(GltfDocument& document, const tinygltf::Primitive& source, GltfPrimitive& primitive) {
+void read_normals(GltfDocument& document, const tinygltf::Primitive& source, const std::vector<double>& weights,
+                  GltfPrimitive& primitive) {
   const auto values = attribute(document, source, primitive, "NORMAL", 3, 3);
   if (!values) return;
   primitive.normals = vectors(*values);
+  apply_gltf_morphs(document, source, weights, "NORMAL", primitive.name, primitive.normals);
   const bool have_directions = std::ranges::all_of(primitive.normals, [](glm::vec3 normal) {
     const float length = glm::length(normal);
     return length > 0 && std::isfinite(length);
@@ -97,13 +100,34 @@ void read_color(GltfDocument& document, const tinygltf::Primitive& source, GltfP
         gltf_number(document, double{values->values[i]}, 0, 1, primitive.name, "COLOR_0");
 }
 
-bool is_morphed(const std::vector<double>& weights) {
-  return std::ranges::any_of(weights, [](double weight) { return weight != 0; });
+/// All sets of joints and weights, one vertex after the other.
+void read_joints(const GltfDocument& document, const tinygltf::Primitive& source, GltfPrimitive& primitive) {
+  std::vector<std::pair<GltfValues, GltfValues>> sets;
+  for (std::size_t set = 0;; ++set) {
+    const auto joints = attribute(document, source, primitive, fmt::format("JOINTS_{}", set), 4, 4);
+    const auto weights = attribute(document, source, primitive, fmt::format("WEIGHTS_{}", set), 4, 4);
+    if (joints.has_value() != weights.has_value())
+      throw gltf_error(document, primitive.name, fmt::format("has only one of JOINTS_{} and WEIGHTS_{}", set, set));
+    if (!joints) break;
+    sets.emplace_back(*joints, *weights);
+  }
+  for (std::size_t vertex = 0; vertex < primitive.positions.size(); ++vertex)
+    for (const auto& [joints, weights] : sets)
+      for (std::size_t i = 4 * vertex; i < 4 * vertex + 4; ++i) {
+        const float weight = weights.values[i];
+        if (!std::isfinite(weight))
+          throw gltf_error(document, primitive.name, fmt::format("a weight of vertex {} is not finite", vertex));
+        primitive.weights.push_back(weight);
+        // What is no whole number is out of range.
+        const bool is_index = joints.values[i] >= 0 && joints.values[i] < 65536;
+        primitive.joints.push_back(is_index ? static_cast<std::uint32_t>(joints.values[i]) : 0xffffffffu);
+      }
 }
 
 /// Nothing for a primitive without triangles.
 std::optional<GltfPrimitive> read_primitive(GltfDocument& document, const std::vector<GltfMaterial>& materials,
-                                            const tinygltf::Primitive& source, std::string name) {
+                                            const tinygltf::Primitive& source, const std::vector<double>& weights,
+                                            std::string name) {
   const bool has_triangles = source.mode >= TINYGLTF_MODE_TRIANGLES && source.mode <= TINYGLTF_MODE_TRIANGLE_FAN;
   if (source.mode < TINYGLTF_MODE_POINTS || source.mode > TINYGLTF_MODE_TRIANGLE_FAN)
     throw gltf_error(document, name, fmt::format("{} is not a primitive mode", source.mode));
@@ -121,15 +145,17 @@ std::optional<GltfPrimitive> read_primitive(GltfDocument& document, const std::v
   if (positions->count > 0xffffffffu)
     throw gltf_error(document, primitive.name, "has more vertices than 32 bits count");
   primitive.positions = vectors(*positions);
+  apply_gltf_morphs(document, source, weights, "POSITION", primitive.name, primitive.positions);
 
   primitive.material = materials.size() - 1;
   if (source.material >= 0) {
     gltf_at(document, document.model.materials, source.material, "material", primitive.name);
     primitive.material = static_cast<std::size_t>(source.material);
   }
-  read_normals(document, source, primitive);
+  read_normals(document, source, weights, primitive);
   read_texture_coordinates(document, source, materials[primitive.material].coordinates, primitive);
   read_color(document, source, primitive);
+  read_joints(document, source, primitive);
 
   std::vector<std::uint32_t> corners;
   if (source.indices >= 0) {
@@ -145,16 +171,19 @@ std::optional<GltfPrimitive> read_primitive(GltfDocument& document, const std::v
 }  // namespace
 
 std::vector<GltfPrimitive> read_gltf_mesh(GltfDocument& document, const std::vector<GltfMaterial>& materials, int index,
-                                          std::string_view owner) {
+                                          const std::vector<double>& weights, std::string_view owner) {
   const tinygltf::Mesh& mesh = gltf_at(document, document.model.meshes, index, "mesh", owner);
   const std::string name = gltf_name("mesh", static_cast<std::size_t>(index), mesh.name);
+  const std::vector<double>& used = weights.empty() ? mesh.weights : weights;
   std::vector<GltfPrimitive> primitives;
   for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
     auto primitive =
-        read_primitive(document, materials, mesh.primitives[i], fmt::format("primitive {} of {}", i, name));
+        read_primitive(document, materials, mesh.primitives[i], used, fmt::format("primitive {} of {}", i, name));
     if (primitive) primitives.push_back(std::move(*primitive));
+    if (!used.empty() && used.size() != mesh.primitives[i].targets.size())
+      gltf_warn(document, fmt::format("primitive {} of {} has {} morph targets, but {} weights for them", i, name,
+                                      mesh.primitives[i].targets.size(), used.size()));
   }
-  if (is_morphed(mesh.weights)) gltf_warn(document, "morph targets have no effect");
   return primitives;
 }
 

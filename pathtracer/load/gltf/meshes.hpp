@@ -21,13 +21,16 @@ struct GltfPrimitive {
   std::vector<glm::vec3> normals;              ///< one for each position, of any length; or none
   std::vector<glm::vec2> texture_coordinates;  ///< likewise, v upwards; of the set that the material's textures use
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< into the arrays above, all of them in range
-  std::size_t material = 0;                             ///< index into the materials of the document
-  glm::vec4 color{1};                                   ///< that all vertices have
+  std::vector<std::uint32_t> joints;  ///< of a skin: the same number of them for each position, or none
+  std::vector<float> weights;         ///< likewise
+  std::size_t material = 0;           ///< index into the materials of the document
+  glm::vec4 color{1};                 ///< that all vertices have
 };
 
-/// Reads the triangles of a mesh. Points, lines, morph targets and varying colours are warnings. Throws Error for
-/// attributes that do not fit each other.
+/// Reads the triangles of a mesh. Points, lines and varying colours are warnings. Throws Error for attributes that do
+/// not fit each other.
+/// @param weights of morph targets; empty: those of the mesh
 std::vector<GltfPrimitive> read_gltf_mesh(GltfDocument& document, const std::vector<GltfMaterial>& materials, int mesh,
-                                          std::string_view owner);
+                                          const std::vector<double>& weights, std::string_view owner);
 
 }  // namespace tandem::pathtracer

@@ -79,7 +79,7 @@ std::vector<GltfNode> place_gltf_nodes(const GltfDocument& document) {
     pending.pop_back();
     const tinygltf::Node& source = gltf_at(document, nodes, next.index, "node", next.parent);
     const auto index = static_cast<std::size_t>(next.index);
-    GltfNode node{.source = &source, .name = gltf_name("node", index, source.name), .transform = {}};
+    GltfNode node{.source = &source, .name = gltf_name("node", index, source.name), .transform = {}, .index = index};
     if (is_placed[index]) throw gltf_error(document, node.name, "has two parents, or is its own ancestor");
     is_placed[index] = true;
     node.transform = next.transform * local_transform(document, source, node.name);
@@ -89,6 +89,8 @@ std::vector<GltfNode> place_gltf_nodes(const GltfDocument& document) {
   }
   return placed;
 }
+
+bool is_hidden(const GltfNode& node) { return glm::dmat3(node.transform) == glm::dmat3(0); }
 
 Camera read_gltf_camera(const GltfDocument& document, const GltfNode& node) {
   const int index = node.source->camera;

@@ -1,27 +1,56 @@
 #include "pathtracer/load/gltf/textures.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "pathtracer/load/gltf/uri.hpp"
+
 namespace tandem::pathtracer {
 namespace {
 
-std::uint32_t load_image(GltfDocument& document, Scene& scene, GltfTextures& textures, int index,
-                         TextureEncoding encoding, std::string_view owner) {
-  const auto [entry, is_new] = textures.images.try_emplace({index, encoding}, 0);
-  if (!is_new) return entry->second;
+/// Whether a file is there to be read; otherwise a warning, where the options allow that.
+bool is_there(GltfDocument& document, const tinygltf::Image& image, std::string_view name) {
+  if (image.bufferView >= 0 || is_data_uri(image.uri)) return true;
+  std::filesystem::path path;
+  try {
+    path = gltf_resource_path(document, image.uri, name);
+  } catch (const Error& error) {
+    if (!document.options.allow_missing_mtl) throw;
+    if (std::ranges::find(document.warnings, error.what()) == document.warnings.end())
+      document.warnings.push_back(error.what());
+    return false;
+  }
+  std::error_code status_error;
+  if (std::filesystem::exists(path, status_error)) return true;
+  constexpr std::string_view sentence = "its file does not exist";
+  if (!document.options.allow_missing_mtl) throw gltf_error(document, name, sentence);
+  gltf_warn(document, fmt::format("{}: {}", name, sentence));
+  return false;
+}
+
+/// Nothing for a file that need not be there and is not.
+std::optional<std::uint32_t> load_image(GltfDocument& document, Scene& scene, GltfTextures& textures, int index,
+                                        TextureEncoding encoding, std::string_view owner) {
+  const auto entry = textures.images.find({index, encoding});
+  if (entry != textures.images.end()) return entry->second;
   const tinygltf::Image& image = gltf_at(document, document.model.images, index, "image", owner);
-  const std::string name =
-      gltf_name("image", static_cast<std::size_t>(index), image.uri.empty() ? image.name : image.uri);
+  const std::string name = gltf_name("image", static_cast<std::size_t>(index),
+                                     image.uri.empty() || is_data_uri(image.uri) ? image.name : image.uri);
+  if (!is_there(document, image, name)) return std::nullopt;
+  std::vector<unsigned char> file;
+  if (image.bufferView < 0) file = gltf_resource(document, image.uri, name);
   const std::span<const unsigned char> bytes =
-      image.bufferView >= 0 ? gltf_view(document, image.bufferView, name) : std::span(image.image);
-  if (bytes.empty()) throw gltf_error(document, name, "its file does not exist or is empty");
-  entry->second = static_cast<std::uint32_t>(scene.images.size());
+      image.bufferView >= 0 ? gltf_view(document, image.bufferView, name) : std::span<const unsigned char>(file);
+  if (bytes.empty()) throw gltf_error(document, name, "is empty");
   scene.images.push_back(
       decode_texture_image(std::as_bytes(bytes), fmt::format("{}: {}", document.path, name), encoding));
-  return entry->second;
+  const auto position = static_cast<std::uint32_t>(scene.images.size() - 1);
+  textures.images.emplace(std::pair(index, encoding), position);
+  return position;
 }
 
 TextureAddress address(const GltfDocument& document, int wrap, std::string_view owner) {
@@ -89,7 +118,9 @@ std::uint32_t add_gltf_texture(GltfDocument& document, Scene& scene, GltfTexture
   }
   Texture texture;
   texture.gpu.channel = channel;
-  texture.image = load_image(document, scene, textures, source.source, encoding, name);
+  const std::optional<std::uint32_t> image = load_image(document, scene, textures, source.source, encoding, name);
+  if (!image) return no_texture;
+  texture.image = *image;
   set_sampler(document, texture.gpu, source.sampler, name);
   if (const tinygltf::Value* transform = gltf_extension(extensions, "KHR_texture_transform"))
     set_transform(document, texture.gpu, *transform, owner);

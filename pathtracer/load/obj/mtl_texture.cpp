@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "pathtracer/image/texture_image.hpp"
+#include "pathtracer/load/file_access.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -16,13 +17,14 @@ TextureImage load(const std::filesystem::path& file, MapKind kind) {
 }  // namespace
 
 std::optional<std::filesystem::path> find_texture(const std::filesystem::path& folder,
-                                                  const std::filesystem::path& name) {
+                                                  const std::filesystem::path& name, const LoadOptions& options) {
   const std::filesystem::path last = name.filename();
   const std::filesystem::path candidates[] = {folder / name, folder / last, folder / "textures" / last,
                                               folder / ".." / "textures" / last};
   std::error_code status_error;
   for (const std::filesystem::path& candidate : candidates)
-    if (std::filesystem::exists(candidate, status_error) && !std::filesystem::is_directory(candidate, status_error))
+    if (std::filesystem::exists(candidate, status_error) && !std::filesystem::is_directory(candidate, status_error) &&
+        may_read(candidate, options))
       return candidate.lexically_normal();
   return {};
 }

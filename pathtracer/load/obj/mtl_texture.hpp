@@ -8,15 +8,17 @@
 #include <optional>
 #include <utility>
 
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/load/obj/mtl_loader.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {
 
 /// The file that an MTL file in `folder` means by a texture's name: the name as it stands, or else its last part, in
-/// the folder, in the folder "textures" there or in the one beside it. Nothing where there is none.
+/// the folder, in the folder "textures" there or in the one beside it. Nothing where there is none that
+/// `options` allow to be read.
 std::optional<std::filesystem::path> find_texture(const std::filesystem::path& folder,
-                                                  const std::filesystem::path& name);
+                                                  const std::filesystem::path& name, const LoadOptions& options);
 
 /// The images of a scene by their files, so that each is read once, and its textures by what they read and how.
 struct TextureFiles {

@@ -15,6 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/printable.hpp"
+#include "pathtracer/load/file_access.hpp"
 #include "pathtracer/load/obj/obj_materials.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"
 #include "pathtracer/scene/polygon.hpp"
@@ -336,13 +337,13 @@ std::size_t assemble(Reading& reading) {
 
 }  // namespace
 
-Scene load_obj(const std::filesystem::path& path, const ObjOptions& options, const glm::dvec3& origin) {
+Scene load_obj(const std::filesystem::path& path, const LoadOptions& options, const glm::dvec3& origin) {
   Reading reading;
   reading.scene.origin = origin;
   reading.scene.name = path.filename().string();
   WavefrontText text(path, [&](std::string_view statement) { return filter(reading, statement); });
   reading.text = &text;
-  reading.materials.emplace(text, options.allow_missing_mtl, reading.scene);
+  reading.materials.emplace(text, options_within(path, options), reading.scene);
   parse(reading);
   if (reading.faces.empty()) throw Error(fmt::format("'{}' holds no triangles", path.string()));
   resolve_faces(reading);

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "pathtracer/load/file_access.hpp"
+
 namespace tandem::pathtracer {
 namespace {
 
@@ -12,8 +14,8 @@ constexpr glm::vec3 grey{0.5f};
 
 }  // namespace
 
-ObjMaterials::ObjMaterials(const WavefrontText& text, bool allow_missing, Scene& scene)
-    : text_(&text), allow_missing_(allow_missing), scene_(&scene) {}
+ObjMaterials::ObjMaterials(const WavefrontText& text, LoadOptions options, Scene& scene)
+    : text_(&text), options_(std::move(options)), scene_(&scene) {}
 
 void ObjMaterials::load_libraries(std::string_view names) {
   if (names.empty()) throw text_->error("mtllib names no file");
@@ -28,9 +30,11 @@ void ObjMaterials::load_library(const std::string& name) {
   if (!libraries_.insert(name).second) return;
   const std::filesystem::path path = text_->path().parent_path() / name;
   std::error_code status_error;
-  if (!std::filesystem::exists(path, status_error)) {
-    const Error error = text_->error(fmt::format("the material file '{}' does not exist", path.string()));
-    if (!allow_missing_) throw error;
+  const bool is_inside = may_read(path, options_);
+  if (!is_inside || !std::filesystem::exists(path, status_error)) {
+    const Error error = text_->error(is_inside ? fmt::format("the material file '{}' does not exist", path.string())
+                                               : outside_sentence(path));
+    if (!options_.allow_missing_mtl) throw error;
     scene_->warnings.emplace_back(error.what());
     return;
   }
@@ -56,13 +60,15 @@ std::uint32_t ObjMaterials::add(const std::string& name, const GpuMaterial& mate
 
 void ObjMaterials::load_textures(Entry& entry) {
   for (const MaterialMap& map : entry.material.maps) {
-    if (const auto file = find_texture(entry.folder, map.file)) {
+    if (const auto file = find_texture(entry.folder, map.file, options_)) {
       entry.material.material.*map.member = texture_of(*scene_, textures_, *file, map);
       continue;
     }
     const std::filesystem::path path = entry.folder / map.file;
-    const std::string sentence = fmt::format("{}: the texture '{}' does not exist", entry.place, path.string());
-    if (!allow_missing_) throw Error(sentence);
+    const std::string sentence = may_read(path, options_)
+                                     ? fmt::format("{}: the texture '{}' does not exist", entry.place, path.string())
+                                     : fmt::format("{}: {}", entry.place, outside_sentence(path));
+    if (!options_.allow_missing_mtl) throw Error(sentence);
     if (missing_textures_.insert(path).second) scene_->warnings.push_back(sentence);
   }
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/load/obj/mtl_loader.hpp"
 #include "pathtracer/load/obj/mtl_texture.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"
@@ -22,9 +23,9 @@ class ObjMaterials {
   /// In place of what use() returns: the material of faces before the first usemtl.
   static constexpr std::uint32_t unnamed = 0;
 
-  /// @param text for the places of messages  @param scene gets warnings and, by resolve(), the materials; both must
-  /// outlive this object
-  ObjMaterials(const WavefrontText& text, bool allow_missing, Scene& scene);
+  /// @param text for the places of messages  @param options with a folder (options_within)  @param scene gets warnings
+  /// and, by resolve(), the materials; both must outlive this object
+  ObjMaterials(const WavefrontText& text, LoadOptions options, Scene& scene);
 
   /// The statement mtllib: one file name, or several without blanks. Throws Error.
   void load_libraries(std::string_view names);
@@ -48,7 +49,7 @@ class ObjMaterials {
   std::uint32_t add(const std::string& name, const GpuMaterial& material);
 
   const WavefrontText* text_;
-  bool allow_missing_;
+  LoadOptions options_;
   Scene* scene_;
   std::set<std::string> libraries_;
   std::vector<Entry> entries_;

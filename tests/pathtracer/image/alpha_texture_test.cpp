@@ -39,7 +39,7 @@ std::string error_of(const auto& action) {
 bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
 
 /// An OBJ file with the material "leaf", whose map_d is mask.pgm.
-Scene load_leaf(const std::string& obj, const ObjOptions& options = {}, bool with_texture = true) {
+Scene load_leaf(const std::string& obj, const LoadOptions& options = {}, bool with_texture = true) {
   const ScratchFolder folder;
   if (with_texture) folder.write("mask.pgm", grey_image);
   folder.write("test.mtl", "newmtl leaf\nmap_d mask.pgm\nnewmtl other\nmap_d mask.pgm\nnewmtl solid\n");

@@ -17,7 +17,7 @@ namespace {
 
 const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
-Scene load(std::string_view text, std::string_view mtl = "", const ObjOptions& options = {}) {
+Scene load(std::string_view text, std::string_view mtl = "", const LoadOptions& options = {}) {
   const ScratchFolder folder;
   if (!mtl.empty()) folder.write("test.mtl", mtl);
   return load_obj(folder.write("test.obj", text), options);
