@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/error.hpp"
+#include "base/input_file.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -91,16 +92,9 @@ nlohmann::json parse(const std::string& path, Bytes text) {
 }  // namespace
 
 std::vector<unsigned char> read_gltf_bytes(const std::filesystem::path& path) {
-  std::error_code status_error;
-  if (std::filesystem::is_directory(path, status_error))
-    throw Error(fmt::format("cannot read '{}': it is a folder", path.string()));
-  if (!std::filesystem::is_regular_file(path, status_error))
-    throw Error(fmt::format("cannot read '{}': there is no such file", path.string()));
-  if (std::filesystem::file_size(path, status_error) > 0xffffffffu && !status_error)
-    throw Error(fmt::format("'{}' is larger than 4 GiB", path.string()));
-  std::ifstream file(path, std::ios::binary);
-  std::vector<unsigned char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file) throw Error(fmt::format("cannot read '{}'", path.string()));
+  constexpr std::uint64_t most = 0xffffffff;  // what a .glb can hold
+  const std::string text = tandem::read_bytes(path, most);
+  std::vector<unsigned char> bytes(text.begin(), text.end());
   if (bytes.empty()) throw Error(fmt::format("'{}' is empty", path.string()));
   return bytes;
 }

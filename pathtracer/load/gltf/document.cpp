@@ -135,7 +135,12 @@ std::vector<unsigned char> gltf_resource(const GltfDocument& document, const std
   } catch (const Error& error) {
     throw gltf_error(document, owner, error.what());
   }
-  return read_gltf_bytes(gltf_resource_path(document, uri, owner));
+  const std::filesystem::path path = gltf_resource_path(document, uri, owner);
+  try {
+    return read_gltf_bytes(path);
+  } catch (const Error& error) {
+    throw gltf_error(document, owner, error.what());
+  }
 }
 
 std::filesystem::path gltf_resource_path(const GltfDocument& document, const std::string& uri, std::string_view owner) {

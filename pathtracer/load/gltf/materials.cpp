@@ -143,6 +143,8 @@ void read_emission(Reading& reading, const tinygltf::Material& source) {
   if (material.emission != glm::vec3(0))
     material.emission_texture =
         texture(reading, source.emissiveTexture, TextureEncoding::color, 0, "the emissive texture");
+  // The factor alone would make a lamp of what only glows in places.
+  if (source.emissiveTexture.index >= 0 && material.emission_texture == no_texture) material.emission = glm::vec3(0);
 }
 
 void read_dielectric(Reading& reading, const tinygltf::Material& source) {

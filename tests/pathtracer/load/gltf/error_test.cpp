@@ -99,8 +99,8 @@ TEST_CASE("glTF: accessors and buffer views must stay within their buffers") {
   check_sentence(set("/accessors/0/count", 0x7fffffffffffffff), "accessor 0", "beyond");
   check_sentence(set("/accessors/0/byteOffset", 1), "accessor 0", "beyond");
   check_sentence(set("/accessors/0/byteOffset", 0xffffffffffffffffu), "accessor 0", "beyond");
-  check_sentence(set("/accessors/0/componentType", 5130), "accessor 0", "type");
-  check_sentence(set("/accessors/0/componentType", 5124), "accessor 0", "type");
+  check_sentence(set("/accessors/0/componentType", 5130), "accessor 0", "componentType");
+  check_sentence(set("/accessors/0/componentType", 5124), "accessor 0", "componentType");
   check_sentence(set("/accessors/0/type", "VEC2"), "accessor 0", "type");
   check_sentence(set("/accessors/0/type", "MAT4"), "accessor 0", "type");
   check_sentence(error_after([](GltfFile& file) {
@@ -195,7 +195,7 @@ TEST_CASE("glTF: buffers and images that are missing or broken") {
   check_sentence(image({{"uri", data_uri("image/png", {1, 2, 3})}}), "image 0", "");
   check_sentence(image({{"uri", "data:image/png;base64,"}}), "", "");
   check_sentence(image({{"bufferView", 0}, {"mimeType", "image/png"}}), "image 0", "");
-  check_sentence(image({{"bufferView", 70}, {"mimeType", "image/png"}}), "", "bufferView");
+  check_sentence(image({{"bufferView", 70}, {"mimeType", "image/png"}}), "image 0", "buffer view 70");
   check_sentence(image(nlohmann::json::object()), "", "uri");
 }
 

@@ -259,8 +259,9 @@ TEST_CASE("glTF: numbers out of range are clamped, and a texture without a known
   CHECK(scene.materials[0].metallic == 0);
   CHECK(scene.warnings.size() == 2);
   const Scene dense = load(extension("KHR_materials_ior", {{"ior", 0}}));
-  CHECK(dense.materials[0].ior == 1.5f);
-  CHECK(dense.warnings.size() == 1);
+  // 0 stands for an infinite index (KHR_materials_ior).
+  CHECK(dense.materials[0].ior > 1e6f);
+  CHECK(dense.warnings.empty());
 
   GltfFile file = file_with({{"normalTexture", {{"index", 0}}}});
   file.json["textures"][0] = extension("EXT_texture_webp", {{"source", 0}});
