@@ -10,12 +10,11 @@
 #include <spirv_cross/spirv_cross.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi/valid_shader_reflection.hpp"
+#include "rhi/validation/spirv.hpp"
 
 namespace tandem::rhi {
 namespace {
-
-constexpr std::uint32_t spirv_magic = 0x07230203;
-constexpr std::size_t spirv_header_words = 5;
 
 ShaderStage stage_of(spv::ExecutionModel model, std::string_view label) {
   switch (model) {
@@ -231,8 +230,11 @@ class Reflector {
 }  // namespace
 
 ShaderReflection reflect(std::span<const std::uint32_t> spirv, std::string_view label) {
-  if (spirv.size() < spirv_header_words || spirv[0] != spirv_magic)
-    throw Error(ErrorCode::invalid_argument, label, "the shader is not SPIR-V: its first word is not the magic number");
+  validation::check_spirv(spirv, label);
+  return reflect_valid(spirv, label);
+}
+
+ShaderReflection reflect_valid(std::span<const std::uint32_t> spirv, std::string_view label) {
   try {
     return Reflector(spirv, label).reflect();
   } catch (const Error&) {

@@ -55,8 +55,8 @@ struct ShaderReflection {
   std::vector<SpecializationConstant> specialization_constants;
 };
 
-/// Reads the words with SPIRV-Cross. Throws Error(invalid_argument) when they are no SPIR-V module or hold not exactly
-/// one entry point, Error(unsupported) for a stage or a resource that is not listed above; both name `label`.
+/// Validates the words, then reads them. Throws Error(invalid_argument) when they are no valid SPIR-V or hold not
+/// exactly one entry point, Error(unsupported) for a stage or a resource that is not listed above; both name `label`.
 ShaderReflection reflect(std::span<const std::uint32_t> spirv, std::string_view label);
 
 }  // namespace tandem::rhi

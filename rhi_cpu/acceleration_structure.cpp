@@ -3,6 +3,7 @@
 #include <array>
 #include <cstring>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi/validation.hpp"
+#include "rhi/validation/built.hpp"
 #include "rhi_cpu/buffer.hpp"
 
 namespace tandem::cpu {
@@ -73,17 +75,6 @@ void check_owner(const rhi::TriangleGeometry& triangles, const DeviceState& devi
 
 void check_owner(const rhi::AabbGeometry& boxes, const DeviceState& device) { check_owner(boxes.boxes, device); }
 
-void require(bool holds, const std::string& label, const std::string& why) {
-  if (!holds) throw rhi::Error(rhi::ErrorCode::invalid_argument, label, why);
-}
-
-constexpr const char* never_built = "it is updated, but was never built";
-
-/// Of a compacted copy, whose label is the one at fault.
-void require_source(bool is_built, const std::string& source, const std::string& label) {
-  require(is_built, label, fmt::format("the structure '{}', to be compacted, was never built", source));
-}
-
 template <typename Desc>
 Desc relabelled(Desc desc, std::string label) {
   desc.label = std::move(label);
@@ -115,7 +106,7 @@ void BottomLevelStructure::build(const rhi::BottomLevelDesc& desc) {
 }
 
 void BottomLevelStructure::update(const rhi::BottomLevelDesc& desc) {
-  require(built_ != nullptr, label(), never_built);
+  rhi::validation::check_updated(*this, built_ != nullptr ? std::optional(0u) : std::nullopt, 0);
   // What a compacted copy shares must not change with this one.
   if (built_.use_count() > 1)
     build(desc);
@@ -124,7 +115,7 @@ void BottomLevelStructure::update(const rhi::BottomLevelDesc& desc) {
 }
 
 std::shared_ptr<BottomLevelStructure> BottomLevelStructure::compacted(std::string label) const {
-  require_source(built_ != nullptr, AccelerationStructure::label(), label);
+  rhi::validation::check_compacted(*this, built_ != nullptr, label);
   auto copy = std::make_shared<BottomLevelStructure>(device_, relabelled(created_from_, std::move(label)));
   copy->set_built(built_);
   copy->is_compacted_ = true;
@@ -172,15 +163,13 @@ void TopLevelStructure::build(const rhi::TopLevelDesc& desc) {
 }
 
 void TopLevelStructure::update(const rhi::TopLevelDesc& desc) {
-  require(built_ != nullptr, label(), never_built);
-  const std::uint32_t count = view()->instance_count;
-  require(desc.instance_count == count, label(),
-          fmt::format("an update with {} instances of a structure built with {}", desc.instance_count, count));
+  rhi::validation::check_updated(*this, built_ != nullptr ? std::optional(view()->instance_count) : std::nullopt,
+                                 desc.instance_count);
   build(desc);
 }
 
 std::shared_ptr<TopLevelStructure> TopLevelStructure::compacted(std::string label) const {
-  require_source(built_ != nullptr, AccelerationStructure::label(), label);
+  rhi::validation::check_compacted(*this, built_ != nullptr, label);
   auto copy = std::make_shared<TopLevelStructure>(device_, relabelled(created_from_, std::move(label)));
   copy->set_built(built_);
   copy->is_compacted_ = true;

@@ -1,8 +1,6 @@
 #include "rhi_cpu/bind_group.hpp"
 
-#include <fmt/format.h>
-
-#include "rhi/error.hpp"
+#include "rhi/validation/built.hpp"
 #include "rhi_cpu/acceleration_structure.hpp"
 #include "rhi_cpu/buffer.hpp"
 #include "rhi_cpu/texture.hpp"
@@ -23,9 +21,7 @@ kernel::Resource resource_of(const rhi::BoundResource& bound, const std::string&
   const auto& handle = std::get<rhi::AccelerationStructureHandle>(bound);
   if (handle == nullptr) return {};
   const auto& structure = static_cast<const TopLevelStructure&>(*handle);
-  if (structure.view() == nullptr)
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, structure.label(),
-                     fmt::format("the pipeline '{}' traces it before it is built", label));
+  rhi::validation::check_traced(structure, structure.view() != nullptr, label);
   return {.data = reinterpret_cast<std::byte*>(const_cast<kernel::TopLevel*>(structure.view())), .size = 0};
 }
 

@@ -9,6 +9,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi/validation.hpp"
+#include "rhi/validation/built.hpp"
 #include "rhi_cpu/acceleration_structure.hpp"
 #include "rhi_cpu/bind_group.hpp"
 #include "rhi_cpu/buffer.hpp"
@@ -42,9 +43,7 @@ auto created_from(const rhi::AccelerationStructureHandle& structure) {
 template <typename Structure>
 std::shared_ptr<Structure> own_buildable(const rhi::AccelerationStructureHandle& structure, const DeviceState& device) {
   std::shared_ptr<Structure> built = own<Structure>(structure, device, structure->label());
-  if (built->is_compacted())
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, built->label(),
-                     "a compacted copy has no room for a build, only for an update");
+  rhi::validation::check_room(*built, built->is_compacted());
   return built;
 }
 

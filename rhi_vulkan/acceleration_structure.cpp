@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "rhi/validation/built.hpp"
 #include "rhi_vulkan/command_buffer.hpp"
 
 namespace tandem::vulkan {
@@ -104,9 +105,7 @@ void AccelerationStructure::allocate(std::uint64_t size) {
 rhi::AccelerationStructureHandle make_compacted(const rhi::AccelerationStructureHandle& handle,
                                                 const AccelerationStructure& source, const std::string& label) {
   Context& context = *source.context();
-  if (!source.built_instance_count())
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, label,
-                     "the structure '" + source.label() + "', to be compacted, was never built");
+  rhi::validation::check_compacted(source, source.built_instance_count().has_value(), label);
   return translating_errors(label, "compact the acceleration structure", [&] {
     struct InFlight {
       rhi::AccelerationStructureHandle source;

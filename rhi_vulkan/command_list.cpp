@@ -5,8 +5,11 @@
 #include <cstring>
 #include <optional>
 #include <type_traits>
+#include <utility>
+#include <variant>
 
 #include "rhi/validation.hpp"
+#include "rhi/validation/built.hpp"
 #include "rhi_vulkan/bind_group.hpp"
 #include "rhi_vulkan/compute_pipeline.hpp"
 #include "rhi_vulkan/ray_tracing_pipeline.hpp"
@@ -159,9 +162,7 @@ void CommandList::build(const rhi::AccelerationStructureHandle& handle, const De
     check_against(structure.bottom_level_desc());
   else
     check_against(structure.top_level_desc());
-  if (!updates && structure.is_compacted())
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, structure.label(),
-                     "a compacted copy has no room for a build, only for an update");
+  if (!updates) rhi::validation::check_room(structure, structure.is_compacted());
 
   const BuildInput input = build_input(desc, context_, structure.label());
   const std::uint64_t scratch_size =
@@ -183,17 +184,22 @@ void CommandList::build(const rhi::AccelerationStructureHandle& handle, const De
   recording.commands.handle.buildAccelerationStructuresKHR(info, ranges);
   std::uint32_t instance_count = 0;
   if constexpr (!is_bottom_level) instance_count = desc.instance_count;
-  builds_.push_back({std::static_pointer_cast<AccelerationStructure>(handle), instance_count, updates});
+  structure_uses_.push_back({.kind = updates ? StructureUse::Kind::update : StructureUse::Kind::build,
+                             .structure = std::static_pointer_cast<AccelerationStructure>(handle),
+                             .instance_count = instance_count,
+                             .pipeline = {}});
 }
 
 void CommandList::bind(vk::PipelineBindPoint point, vk::Pipeline pipeline, const PipelineLayout& layout,
-                       std::span<const rhi::BindGroupHandle> bind_groups, std::span<const std::byte> push_constants) {
+                       const std::string& label, std::span<const rhi::BindGroupHandle> bind_groups,
+                       std::span<const std::byte> push_constants) {
   const vk::raii::CommandBuffer& commands = recording_->commands.handle;
   commands.bindPipeline(point, pipeline);
   for (const rhi::BindGroupHandle& group : bind_groups) {
     const std::uint32_t set = group->desc().set;
     if (!layout.uses_set(set)) continue;
-    const vk::DescriptorSet handle = own<BindGroup>(group, context_, label(), "bind group").handle();
+    note_traced(*group, label);
+    const vk::DescriptorSet handle = own<BindGroup>(group, context_, this->label(), "bind group").handle();
     commands.bindDescriptorSets(point, layout.handle(), set, handle, nullptr);
   }
   if (!push_constants.empty())
@@ -208,7 +214,8 @@ void CommandList::dispatch(const rhi::DispatchDesc& desc) {
   const auto& pipeline = own<ComputePipeline>(desc.pipeline, context_, label(), "pipeline");
   recording.resources.push_back(desc.pipeline);
   order(CommandKind::exclusive, {});
-  bind(vk::PipelineBindPoint::eCompute, pipeline.handle(), pipeline.layout(), desc.bind_groups, desc.push_constants);
+  bind(vk::PipelineBindPoint::eCompute, pipeline.handle(), pipeline.layout(), pipeline.label(), desc.bind_groups,
+       desc.push_constants);
   recording.commands.handle.dispatch(desc.workgroup_count[0], desc.workgroup_count[1], desc.workgroup_count[2]);
 }
 
@@ -227,7 +234,7 @@ void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
   recording.resources.push_back(desc.table);
   order(CommandKind::exclusive, {});
   const RayTracingPipeline& pipeline = table.pipeline();
-  bind(vk::PipelineBindPoint::eRayTracingKHR, pipeline.handle(), pipeline.layout(), desc.bind_groups,
+  bind(vk::PipelineBindPoint::eRayTracingKHR, pipeline.handle(), pipeline.layout(), pipeline.label(), desc.bind_groups,
        desc.push_constants);
   const vk::raii::CommandBuffer& commands = recording.commands.handle;
   if (pipeline.stack_size()) commands.setRayTracingPipelineStackSizeKHR(*pipeline.stack_size());
@@ -254,27 +261,51 @@ void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_
   dependencies_.require_barrier();
 }
 
-std::uint64_t CommandList::submit() {
-  Recording& recording = this->recording();
-  for (const Build& build : builds_) {
-    const std::optional<std::uint32_t> built = build.structure->built_instance_count();
-    if (!build.updates)
-      build.structure->mark_built(build.instance_count);
-    else if (!built)
-      throw rhi::Error(rhi::ErrorCode::invalid_argument, build.structure->label(),
-                       "it is updated, but was never built");
-    else if (*built != build.instance_count)
-      throw rhi::Error(rhi::ErrorCode::invalid_argument, build.structure->label(),
-                       "an update with " + std::to_string(build.instance_count) +
-                           " instances of a structure built with " + std::to_string(*built));
+void CommandList::note_traced(const rhi::BindGroup& group, const std::string& pipeline) {
+  for (const rhi::BindGroupEntry& entry : group.desc().entries) {
+    const auto* handle = std::get_if<rhi::AccelerationStructureHandle>(&entry.resource);
+    if (handle == nullptr || *handle == nullptr) continue;
+    structure_uses_.push_back({.kind = StructureUse::Kind::trace,
+                               .structure = std::static_pointer_cast<AccelerationStructure>(*handle),
+                               .instance_count = 0,
+                               .pipeline = pipeline});
   }
+}
+
+std::map<AccelerationStructure*, std::uint32_t> CommandList::check_structure_uses() const {
+  std::map<AccelerationStructure*, std::uint32_t> built;
+  for (const StructureUse& use : structure_uses_) {
+    AccelerationStructure& structure = *use.structure;
+    const auto here = built.find(&structure);
+    const std::optional<std::uint32_t> count =
+        here != built.end() ? std::optional(here->second) : structure.built_instance_count();
+    switch (use.kind) {
+      case StructureUse::Kind::build:
+        built[&structure] = use.instance_count;
+        break;
+      case StructureUse::Kind::update:
+        rhi::validation::check_updated(structure, count, use.instance_count);
+        break;
+      case StructureUse::Kind::trace:
+        rhi::validation::check_traced(structure, count.has_value(), use.pipeline);
+        break;
+    }
+  }
+  return built;
+}
+
+std::uint64_t CommandList::submit() {
+  this->recording();
+  // Whatever happens, the list is used up.
+  const std::shared_ptr<Recording> recording = std::exchange(recording_, nullptr);
+  const auto built = check_structure_uses();
   return translating_errors(label(), "submit the command list", [&] {
-    recording.commands.handle.end();
-    const vk::CommandBuffer commands = *recording.commands.handle;
-    const std::uint64_t number = context_->queue.submit(commands, std::exchange(recording_, nullptr));
+    recording->commands.handle.end();
+    const std::uint64_t number = context_->queue.submit(*recording->commands.handle, recording);
     for (const auto& [pool, index] : timestamps_) pool->mark_submitted(index);
     timestamps_.clear();
-    builds_.clear();
+    for (const auto& [structure, instance_count] : built) structure->mark_built(instance_count);
+    structure_uses_.clear();
     return number;
   });
 }

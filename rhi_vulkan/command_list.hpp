@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,10 +51,12 @@ class CommandList final : public rhi::CommandList {
     std::vector<std::shared_ptr<const void>> resources;
   };
 
-  struct Build {
+  struct StructureUse {
+    enum class Kind { build, update, trace };
+    Kind kind;
     std::shared_ptr<AccelerationStructure> structure;
-    std::uint32_t instance_count;  ///< of a top level
-    bool updates;
+    std::uint32_t instance_count;  ///< of the build or update of a top level
+    std::string pipeline;          ///< label of the one that traces
   };
 
   /// Throws rhi::Error(invalid_argument) once the list was submitted.
@@ -62,8 +66,12 @@ class CommandList final : public rhi::CommandList {
   template <typename Copy>
   void copy_texture(const rhi::BufferRange& range, const rhi::TextureHandle& handle, vk::ImageLayout layout,
                     Copy&& copy);
-  void bind(vk::PipelineBindPoint point, vk::Pipeline pipeline, const PipelineLayout& layout,
+  /// @param label the pipeline's
+  void bind(vk::PipelineBindPoint point, vk::Pipeline pipeline, const PipelineLayout& layout, const std::string& label,
             std::span<const rhi::BindGroupHandle> bind_groups, std::span<const std::byte> push_constants);
+  void note_traced(const rhi::BindGroup& group, const std::string& pipeline);
+  /// Throws rhi::Error(invalid_argument) for a rule that they break. What the list builds, with the instances.
+  std::map<AccelerationStructure*, std::uint32_t> check_structure_uses() const;
   template <typename Desc>
   void build(const rhi::AccelerationStructureHandle& handle, const Desc& desc,
              vk::BuildAccelerationStructureModeKHR mode);
@@ -72,7 +80,7 @@ class CommandList final : public rhi::CommandList {
   std::shared_ptr<Recording> recording_;  // empty once submitted
   DependencyTracker dependencies_;
   std::vector<std::pair<std::shared_ptr<QueryPool>, std::uint32_t>> timestamps_;
-  std::vector<Build> builds_;  // checked when the list is submitted: only then is it known what was built before
+  std::vector<StructureUse> structure_uses_;  // checked on submission: only then is it known what was built before
 };
 
 }  // namespace tandem::vulkan

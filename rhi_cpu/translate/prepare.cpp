@@ -4,11 +4,11 @@
 #include <unordered_set>
 
 #include <fmt/format.h>
-#include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 #include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi/validation/spirv.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
@@ -28,19 +28,6 @@ spv::Op operation(std::span<const std::uint32_t> instruction) { return static_ca
 
 [[noreturn]] void fail(const std::string& label, const std::string& why) {
   throw rhi::Error(rhi::ErrorCode::invalid_argument, label, why);
-}
-
-void validate(std::span<const std::uint32_t> spirv, const std::string& label) {
-  spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_6);
-  std::string first_message;
-  tools.SetMessageConsumer([&](spv_message_level_t, const char*, const spv_position_t&, const char* message) {
-    if (first_message.empty()) first_message = message;
-  });
-  spvtools::ValidatorOptions options;
-  options.SetScalarBlockLayout(true);
-  // glslang passes elements of arrays to functions, such as ray queries, which the rules of logical addressing forbid.
-  options.SetBeforeHlslLegalization(true);
-  if (!tools.Validate(spirv.data(), spirv.size(), options)) fail(label, "the SPIR-V is not valid: " + first_message);
 }
 
 bool has_specialization(std::span<const std::uint32_t> spirv) {
@@ -140,10 +127,9 @@ void check_folded(std::span<const std::uint32_t> spirv, const std::string& label
 
 std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const std::string& label,
                                    std::span<const rhi::SpecializationValue> specialization) {
-  if (spirv.size() < header_words || spirv[0] != spv::MagicNumber)
-    fail(label, "the shader is not SPIR-V: its first word is not the magic number");
+  rhi::validation::check_spirv_words(spirv, label);
   check_supported(spirv, label);
-  validate(spirv, label);
+  rhi::validation::check_spirv(spirv, label);
   std::vector<std::uint32_t> words = specialize(spirv, label, specialization);
   check_folded(words, label);
   for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rhi/error.hpp"
-#include "rhi/shader_reflection.hpp"
+#include "rhi/valid_shader_reflection.hpp"
 #include "rhi_cpu/translate/prepare.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
@@ -12,7 +12,7 @@ namespace tandem::cpu {
 
 Translation translate(std::span<const std::uint32_t> spirv, const std::string& label, const TranslateOptions& options) {
   const std::vector<std::uint32_t> words = prepare(spirv, label, options.specialization);
-  const rhi::ShaderReflection reflection = rhi::reflect(words, label);
+  const rhi::ShaderReflection reflection = rhi::reflect_valid(words, label);
   try {
     return {Printer(words, label, reflection, options.entry_symbol).compile()};
   } catch (const rhi::Error&) {

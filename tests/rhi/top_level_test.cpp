@@ -229,3 +229,29 @@ TANDEM_DEVICE_TEST("broken rules of top levels are errors that name the structur
   CHECK_ERROR(invalid_argument, "scene: ", list->build_top_level(structure, desc));
   CHECK_ERROR(invalid_argument, "scene: ", list->build_bottom_level(structure, {}));
 }
+
+TANDEM_DEVICE_TEST("a structure is built before it is traced, in an earlier list or the same") {
+  REQUIRE(device.info().capabilities.ray_query);
+  rhi::TopLevelDesc desc;
+  desc.label = "scene";
+  desc.flags = rhi::BuildFlags::allow_update | rhi::BuildFlags::allow_compaction;
+  const rhi::AccelerationStructureHandle structure = device.create_top_level(desc);
+  CHECK_ERROR(invalid_argument, "scene: the pipeline 'ray probe' traces it before it is built",
+              trace(device, structure, {down(0, 0)}));
+  CHECK_ERROR(invalid_argument, "copy: the structure 'scene', to be compacted, was never built",
+              device.create_compacted(structure, "copy"));
+  const rhi::CommandListHandle update = device.create_command_list("update");
+  update->update_top_level(structure, desc);
+  CHECK_ERROR(invalid_argument, "scene: it is updated, but was never built", device.submit(update));
+  CHECK_ERROR(invalid_argument, "update: ", device.submit(update));  // a list whose submission threw is used up
+
+  const rhi::CommandListHandle list = device.create_command_list("both");
+  list->build_top_level(structure, desc);
+  list->update_top_level(structure, desc);
+  device.submit(list);
+  CHECK(trace(device, structure, {down(0, 0)})[0].type == 0);
+  const rhi::AccelerationStructureHandle copy = device.create_compacted(structure, "copy");
+  const rhi::CommandListHandle rebuild = device.create_command_list("rebuild");
+  CHECK_ERROR(invalid_argument, "copy: a compacted copy has no room for a build, only for an update",
+              rebuild->build_top_level(copy, desc));
+}

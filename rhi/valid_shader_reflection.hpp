@@ -1,0 +1,11 @@
+#pragma once
+
+#include "rhi/shader_reflection.hpp"
+
+namespace tandem::rhi {
+
+/// reflect() of words that were made from a validated module, so that they need not pass the validator again. Anything
+/// else may crash the parser.
+ShaderReflection reflect_valid(std::span<const std::uint32_t> spirv, std::string_view label);
+
+}  // namespace tandem::rhi
