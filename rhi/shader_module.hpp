@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rhi/shader_reflection.hpp"
+#include "rhi/valid_shader_reflection.hpp"
 
 namespace tandem::rhi {
 
@@ -14,6 +14,9 @@ namespace tandem::rhi {
 struct ShaderModuleDesc {
   std::span<const std::uint32_t> spirv;  ///< copied by create_shader_module
   std::string label;
+  /// The words have passed the validator before, as those of a program's own shaders when it was built: they are not
+  /// validated again, which takes tenths of a second for large ones. Others may crash the program.
+  bool known_valid = false;
 };
 
 /// A SPIR-V module with one entry point, and what reflection says of it.
@@ -30,7 +33,9 @@ class ShaderModule {
  protected:
   /// Copies the words and reflects them. Throws Error(invalid_argument) when they are no SPIR-V module.
   explicit ShaderModule(const ShaderModuleDesc& desc)
-      : label_(desc.label), spirv_(desc.spirv.begin(), desc.spirv.end()), reflection_(reflect(spirv_, label_)) {}
+      : label_(desc.label),
+        spirv_(desc.spirv.begin(), desc.spirv.end()),
+        reflection_(desc.known_valid ? reflect_valid(spirv_, label_) : reflect(spirv_, label_)) {}
 
  private:
   std::string label_;

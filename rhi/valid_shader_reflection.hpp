@@ -4,7 +4,7 @@
 
 namespace tandem::rhi {
 
-/// reflect() of words that were made from a validated module, so that they need not pass the validator again. Anything
+/// reflect() of words that have passed the validator, or were made from such words. Anything
 /// else may crash the parser.
 ShaderReflection reflect_valid(std::span<const std::uint32_t> spirv, std::string_view label);
 

@@ -19,7 +19,7 @@ struct TrialConstants {
 /// Two hit records for triangles and two for spheres, each with its number: hit_record says which an instance names.
 rhi::ShaderTableHandle create_table(rhi::Device& device) {
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
-    return device.create_shader_module({spirv, label});
+    return device.create_shader_module({spirv, label, true});
   };
   rhi::RayTracingPipelineDesc desc;
   desc.ray_generation = {module(probe_shaders::probe_rgen(), "probe.rgen")};
@@ -51,10 +51,10 @@ rhi::ShaderTableHandle create_table(rhi::Device& device) {
 Prober::Prober(rhi::Device& device, const pathtracer::Scene& scene, std::optional<pathtracer::TracingMode> form)
     : device_(device), form_(pathtracer::choose_tracing_mode(device.info(), form)), structures_(device, scene) {
   if (form_ == pathtracer::TracingMode::query) {
-    compute_ =
-        device.create_compute_pipeline({.shader = device.create_shader_module({probe_shaders::probe(), "probe.comp"}),
-                                        .specialization = {},
-                                        .label = "probe"});
+    compute_ = device.create_compute_pipeline(
+        {.shader = device.create_shader_module({probe_shaders::probe(), "probe.comp", true}),
+         .specialization = {},
+         .label = "probe"});
     pipeline_ = compute_;
   } else {
     table_ = create_table(device);

@@ -42,7 +42,7 @@ EntryPoint ray_generation_shader(PathTraceTask task) {
 }
 
 rhi::ComputePipelineHandle compute_pipeline(rhi::Device& device, const EntryPoint& shader, Features features) {
-  return device.create_compute_pipeline({.shader = device.create_shader_module({shader.spirv, shader.label}),
+  return device.create_compute_pipeline({.shader = device.create_shader_module({shader.spirv, shader.label, true}),
                                          .specialization = specialization(features),
                                          .label = "path tracer"});
 }
@@ -54,7 +54,7 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, PathTraceTask task, Fea
   // Recorded rays carry more.
   const bool log = task == PathTraceTask::log;
   const auto module = [&](std::span<const std::uint32_t> spirv, const char* label) {
-    return device.create_shader_module({spirv, label});
+    return device.create_shader_module({spirv, label, true});
   };
   rhi::RayTracingPipelineDesc desc;
   desc.ray_generation = {module(ray_generation.spirv, ray_generation.label)};

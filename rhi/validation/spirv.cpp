@@ -58,8 +58,8 @@ void check_spirv_words(std::span<const std::uint32_t> words, std::string_view la
   for (std::size_t i = header_words; i < words.size();) {
     const std::size_t length = words[i] >> 16;
     require(length > 0 && length <= words.size() - i, label,
-            "the SPIR-V is not valid: the instruction at word " + std::to_string(i) + " has " +
-                std::to_string(length) + " words, where the module has " + std::to_string(words.size() - i) + " more");
+            "the SPIR-V is not valid: the instruction at word " + std::to_string(i) + " has " + std::to_string(length) +
+                " words, where the module has " + std::to_string(words.size() - i) + " more");
     i += length;
   }
 }

@@ -142,7 +142,9 @@ const SPIRType& Printer::element_type(const Type& type, std::uint32_t index) con
 std::string Printer::element(const std::string& composite, const Type& type, std::uint32_t index) const {
   if (is_array(type) || (type.basetype != SPIRType::Struct && type.columns > 1))
     return fmt::format("{}[{}]", composite, index);
-  if (type.basetype == SPIRType::Struct) return fmt::format("{}.{}", composite, member_names(type)[index]);
+  if (type.basetype == SPIRType::Struct) return fmt::format("{}.{}", composite, member_names(type).at(index));
+  // No rule of SPIR-V forbids such a constant.
+  if (index >= type.vecsize) fail(fmt::format("component {} of a vector of {}", index, type.vecsize));
   return fmt::format("{}.{}", composite, "xyzw"[index]);
 }
 

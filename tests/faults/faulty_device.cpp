@@ -228,7 +228,7 @@ class FaultyDevice final : public rhi::Device {
     if (!state_->edits.shader(module, rhi::reflect(desc.spirv, desc.label).stage))
       return inner().create_shader_module(desc);
     const std::vector<std::uint32_t> words = module.words();
-    return inner().create_shader_module({words, desc.label});
+    return inner().create_shader_module({words, desc.label, true});
   }
   rhi::ComputePipelineHandle create_compute_pipeline(const rhi::ComputePipelineDesc& desc) override {
     rhi::ComputePipelineDesc edited = desc;

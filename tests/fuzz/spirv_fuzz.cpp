@@ -40,10 +40,10 @@ layout(constant_id = 0) const uint count = 3;
 layout(constant_id = 2) const float scale = 2.0;
 )";
   const auto compute = [&](const std::string& body) {
-    return glsl::compile(common + body, rhi::ShaderStage::compute, "seed", {.include_directories = {}, .debug_info = true});
+    return glsl::compile(common + body, rhi::ShaderStage::compute, "seed",
+                         {.include_directories = {}, .debug_info = true});
   };
-  std::vector<Words> result = {
-      compute(R"(struct Item { vec3 p; mat3 m; float a[count]; };
+  std::vector<Words> result = {compute(R"(struct Item { vec3 p; mat3 m; float a[count]; };
 layout(binding = 0, scalar) buffer Items { Item items[]; };
 layout(binding = 1) uniform Sizes { uvec4 sizes[4]; };
 layout(push_constant) uniform Constants { vec4 tint; uint first; };
@@ -53,7 +53,7 @@ void main() {
   if (i >= items.length()) return;
   switch (sizes[i & 3].x) { case 0: items[i].p = tint.xyz; break; case 7: items[i].m[1] *= 2.0; default: items[i].p.y = sum(items[i]); }
 })"),
-      compute(R"(layout(binding = 0) uniform accelerationStructureEXT scene;
+                               compute(R"(layout(binding = 0) uniform accelerationStructureEXT scene;
 layout(binding = 1, std430) buffer Result { float t[]; };
 layout(binding = 2, rgba32f) uniform image2D pictures[2];
 void main() {

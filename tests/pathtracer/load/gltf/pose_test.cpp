@@ -1,5 +1,5 @@
-// What is valid but rare: sparse accessors, morph targets, skins, data URIs of other kinds, hidden nodes; and members of
-// the wrong kind, which are refused.
+// What is valid but rare: sparse accessors, morph targets, skins, data URIs of other kinds, hidden nodes; and members
+// of the wrong kind, which are refused.
 
 #include <string>
 
@@ -32,7 +32,9 @@ TEST_CASE("glTF: sparse accessors replace values, of positions and of indices") 
   const Scene scene = loaded_after([](test::GltfFile& file) {
     const int moved = file.add_vectors({0, 0, 5});
     const int at = file.add_indices({2});
-    const auto view_of = [&](int accessor) { return file.json["accessors"][static_cast<std::size_t>(accessor)]["bufferView"]; };
+    const auto view_of = [&](int accessor) {
+      return file.json["accessors"][static_cast<std::size_t>(accessor)]["bufferView"];
+    };
     const int positions = file.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"];
     file.json["accessors"][static_cast<std::size_t>(positions)]["sparse"] = {
         {"count", 1},
@@ -47,11 +49,13 @@ TEST_CASE("glTF: sparse accessors replace values, of positions and of indices") 
 TEST_CASE("glTF: morph targets have the weights of the node, or else of the mesh") {
   const auto morphed = [](const nlohmann::json& mesh_weights, const nlohmann::json& node_weights) {
     return loaded_after([&](test::GltfFile& file) {
-      const int up = file.add_vectors({0, 0, 2, 0, 0, 2, 0, 0, 2});
-      file.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}};
-      if (!mesh_weights.is_null()) file.json["meshes"][0]["weights"] = mesh_weights;
-      if (!node_weights.is_null()) file.json["nodes"][0]["weights"] = node_weights;
-    }).positions[0].z;
+             const int up = file.add_vectors({0, 0, 2, 0, 0, 2, 0, 0, 2});
+             file.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}};
+             if (!mesh_weights.is_null()) file.json["meshes"][0]["weights"] = mesh_weights;
+             if (!node_weights.is_null()) file.json["nodes"][0]["weights"] = node_weights;
+           })
+        .positions[0]
+        .z;
   };
   CHECK(morphed(nullptr, nullptr) == 0);
   CHECK(morphed({0.5}, nullptr) == 1);
@@ -75,7 +79,8 @@ TEST_CASE("glTF: a skinned mesh follows its joints and not its node") {
 TEST_CASE("glTF: a light below a node that is scaled to nothing is hidden") {
   const Scene scene = loaded_after([](test::GltfFile& file) {
     file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    file.json["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", nlohmann::json::object()}}}}}}};
+    file.json["extensions"] = {
+        {"KHR_lights_punctual", {{"lights", {{{"type", "spot"}, {"spot", nlohmann::json::object()}}}}}}};
     file.add_node({{"scale", {0, 0, 0}}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
   });
   CHECK(scene.lights.empty());
