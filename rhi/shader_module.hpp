@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "rhi/valid_shader_reflection.hpp"
+#include "rhi/shader_reflection.hpp"
 
 namespace tandem::rhi {
 

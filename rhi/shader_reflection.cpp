@@ -10,8 +10,7 @@
 #include <spirv_cross/spirv_cross.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/valid_shader_reflection.hpp"
-#include "rhi/validation/spirv.hpp"
+#include "rhi/spirv_validation.hpp"
 
 namespace tandem::rhi {
 namespace {
@@ -230,7 +229,7 @@ class Reflector {
 }  // namespace
 
 ShaderReflection reflect(std::span<const std::uint32_t> spirv, std::string_view label) {
-  validation::check_spirv(spirv, label);
+  check_spirv(spirv, label);
   return reflect_valid(spirv, label);
 }
 

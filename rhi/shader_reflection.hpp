@@ -59,4 +59,7 @@ struct ShaderReflection {
 /// exactly one entry point, Error(unsupported) for a stage or a resource that is not listed above; both name `label`.
 ShaderReflection reflect(std::span<const std::uint32_t> spirv, std::string_view label);
 
+/// reflect() of words that have passed the validator, or were made from such words. Anything else may crash the parser.
+ShaderReflection reflect_valid(std::span<const std::uint32_t> spirv, std::string_view label);
+
 }  // namespace tandem::rhi

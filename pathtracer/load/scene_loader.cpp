@@ -7,8 +7,8 @@
 
 #include "base/error.hpp"
 #include "base/printable.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 #include "pathtracer/load/description/description.hpp"
-#include "pathtracer/load/file_access.hpp"
 #include "pathtracer/load/gltf/loader.hpp"
 #include "pathtracer/scene/local_origin.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "pathtracer/load/load_options.hpp"
+#include "pathtracer/load/access/load_options.hpp"
 #include "pathtracer/load/obj/obj_loader.hpp"
 #include "pathtracer/scene/scene.hpp"
 

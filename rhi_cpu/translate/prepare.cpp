@@ -8,7 +8,7 @@
 #include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/validation/spirv.hpp"
+#include "rhi/spirv_validation.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
@@ -127,9 +127,9 @@ void check_folded(std::span<const std::uint32_t> spirv, const std::string& label
 
 std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const std::string& label,
                                    std::span<const rhi::SpecializationValue> specialization) {
-  rhi::validation::check_spirv_words(spirv, label);
+  rhi::check_spirv_words(spirv, label);
   check_supported(spirv, label);
-  rhi::validation::check_spirv(spirv, label);
+  rhi::check_spirv(spirv, label);
   std::vector<std::uint32_t> words = specialize(spirv, label, specialization);
   check_folded(words, label);
   for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {

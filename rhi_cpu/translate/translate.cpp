@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rhi/error.hpp"
-#include "rhi/valid_shader_reflection.hpp"
+#include "rhi/shader_reflection.hpp"
 #include "rhi_cpu/translate/prepare.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "pathtracer/load/access/load_options.hpp"
 #include "pathtracer/load/description/geometry.hpp"
-#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer {

@@ -9,8 +9,8 @@
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
+#include "pathtracer/load/access/file_access.hpp"
 #include "pathtracer/load/description/transform.hpp"
-#include "pathtracer/load/file_access.hpp"
 #include "pathtracer/scene/merge.hpp"
 
 namespace tandem::pathtracer::description {

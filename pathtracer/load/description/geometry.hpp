@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "base/json_value.hpp"
+#include "pathtracer/load/access/load_options.hpp"
 #include "pathtracer/load/description/materials.hpp"
 #include "pathtracer/load/description/ranges.hpp"
-#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer::description {

@@ -4,7 +4,7 @@
 
 #include <glm/trigonometric.hpp>
 
-#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 
 namespace tandem::pathtracer::description {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "base/json_value.hpp"
 #include "pathtracer/image/texture_image.hpp"
+#include "pathtracer/load/access/load_options.hpp"
 #include "pathtracer/load/description/ranges.hpp"
-#include "pathtracer/load/load_options.hpp"
 #include "pathtracer/scene/scene.hpp"
 
 namespace tandem::pathtracer::description {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 #include "pathtracer/load/gltf/container.hpp"
 #include "pathtracer/load/gltf/schema.hpp"
 #include "pathtracer/load/gltf/uri.hpp"
@@ -151,10 +151,6 @@ std::filesystem::path gltf_resource_path(const GltfDocument& document, const std
   const std::filesystem::path path = std::filesystem::path(document.path).parent_path() / name;
   if (!may_read(path, document.options)) throw gltf_error(document, owner, outside_sentence(name));
   return path;
-}
-
-std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name) {
-  return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {} ('{}')", kind, index, name);
 }
 
 Error gltf_error(const GltfDocument& document, std::string_view object, std::string_view sentence) {

@@ -11,7 +11,8 @@
 #include <tiny_gltf.h>
 
 #include "base/error.hpp"
-#include "pathtracer/load/load_options.hpp"
+#include "pathtracer/load/access/load_options.hpp"
+#include "pathtracer/load/gltf/members.hpp"
 
 namespace tandem::pathtracer {
 
@@ -35,9 +36,6 @@ std::vector<unsigned char> gltf_resource(const GltfDocument& document, const std
 
 /// The file that a URI names. Throws Error likewise, but for one that is not there.
 std::filesystem::path gltf_resource_path(const GltfDocument& document, const std::string& uri, std::string_view owner);
-
-/// "mesh 2 ('vase')": how messages call an object.
-std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name);
 
 /// "vase.gltf: mesh 2 ('vase'): sentence".
 Error gltf_error(const GltfDocument& document, std::string_view object, std::string_view sentence);

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pathtracer/load/gltf/document.hpp"
+#include "base/error.hpp"
 
 namespace tandem::pathtracer {
 namespace {
@@ -162,6 +162,10 @@ void GltfMembers::named_objects(const std::string& member, std::string_view kind
     members.text("name");
     check(members);
   }
+}
+
+std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name) {
+  return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} {} ('{}')", kind, index, name);
 }
 
 }  // namespace tandem::pathtracer

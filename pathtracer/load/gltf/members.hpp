@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <initializer_list>
@@ -65,5 +66,8 @@ class GltfMembers {
   std::string prefix_;
   nlohmann::json* object_;
 };
+
+/// "mesh 2 ('vase')": how messages call an object.
+std::string gltf_name(std::string_view kind, std::size_t index, const std::string& name);
 
 }  // namespace tandem::pathtracer

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "pathtracer/image/texture_image.hpp"
-#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 
 namespace tandem::pathtracer {
 namespace {

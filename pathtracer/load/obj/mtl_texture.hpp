@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "pathtracer/load/load_options.hpp"
+#include "pathtracer/load/access/load_options.hpp"
 #include "pathtracer/load/obj/mtl_loader.hpp"
 #include "pathtracer/scene/scene.hpp"
 

@@ -15,7 +15,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/printable.hpp"
-#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 #include "pathtracer/load/obj/obj_materials.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"
 #include "pathtracer/scene/polygon.hpp"

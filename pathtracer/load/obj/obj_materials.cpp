@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 
 namespace tandem::pathtracer {
 namespace {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pathtracer/load/load_options.hpp"
+#include "pathtracer/load/access/load_options.hpp"
 #include "pathtracer/load/obj/mtl_loader.hpp"
 #include "pathtracer/load/obj/mtl_texture.hpp"
 #include "pathtracer/load/obj/wavefront_text.hpp"

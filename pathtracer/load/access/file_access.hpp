@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "pathtracer/load/load_options.hpp"
+#include "pathtracer/load/access/load_options.hpp"
 
 namespace tandem::pathtracer {
 

@@ -6,7 +6,7 @@
 
 /// The one gate that every SPIR-V module passes before anything parses it: neither SPIRV-Cross nor a driver looks at
 /// what it is given.
-namespace tandem::rhi::validation {
+namespace tandem::rhi {
 
 /// The words are SPIR-V of this machine's byte order, and their instructions fill them. Throws Error(invalid_argument)
 /// in the name of `label`.
@@ -16,4 +16,4 @@ void check_spirv_words(std::span<const std::uint32_t> words, std::string_view la
 /// Error(invalid_argument) with the validator's first sentence.
 void check_spirv(std::span<const std::uint32_t> words, std::string_view label);
 
-}  // namespace tandem::rhi::validation
+}  // namespace tandem::rhi

@@ -1,4 +1,4 @@
-#include "rhi/validation/spirv.hpp"
+#include "rhi/spirv_validation.hpp"
 
 #include <string>
 #include <unordered_set>
@@ -7,12 +7,16 @@
 #include <spirv-tools/libspirv.hpp>
 #include <spirv_cross/spirv.hpp>
 
-#include "rhi/validation/require.hpp"
+#include "rhi/error.hpp"
 
-namespace tandem::rhi::validation {
+namespace tandem::rhi {
 namespace {
 
 constexpr std::size_t header_words = 5;
+
+void require(bool holds, std::string_view label, const std::string& otherwise) {
+  if (!holds) throw Error(ErrorCode::invalid_argument, label, otherwise);
+}
 
 spv::Op operation(std::span<const std::uint32_t> instruction) { return static_cast<spv::Op>(instruction[0] & 0xffff); }
 
@@ -82,4 +86,4 @@ void check_spirv(std::span<const std::uint32_t> words, std::string_view label) {
   require(is_valid, label, "the SPIR-V is not valid: " + sentence(first_message));
 }
 
-}  // namespace tandem::rhi::validation
+}  // namespace tandem::rhi

@@ -1,4 +1,4 @@
-#include "pathtracer/load/file_access.hpp"
+#include "pathtracer/load/access/file_access.hpp"
 
 #include <algorithm>
 #include <system_error>
