@@ -68,7 +68,7 @@ TEST_CASE("a suite compares every scene on every pair of devices under every set
                                      {"--json", "x.json", "--junit", "x.xml"});
   CHECK(outcome.errors == "");
   CHECK(outcome.exit_code == 0);
-  CHECK(contains(outcome.output, "8 comparisons: 8 agree, 0 differ, 0 failed; 0 were reused"));
+  CHECK(contains(outcome.output, "8 comparisons: 8 agree, 0 are explained, 0 differ, 0 failed; 0 were reused"));
 
   const Json json = read_json(folder.path() / "x.json");
   CHECK(json == read_json(folder.path() / "out/suite.json"));
@@ -163,7 +163,7 @@ TEST_CASE("an interrupted suite goes on where it was") {
   suite["scenes"][1]["settings"]["spp"] = 1;
   const Outcome finished = folder.run(suite);
   CHECK(finished.exit_code == 0);
-  CHECK(contains(finished.output, "2 comparisons: 2 agree, 0 differ, 0 failed; 1 were reused"));
+  CHECK(contains(finished.output, "2 comparisons: 2 agree, 0 are explained, 0 differ, 0 failed; 1 were reused"));
 }
 
 TEST_CASE("a comparison that fails and one that differs are results, worst first, and exit code 1") {

@@ -83,11 +83,11 @@ TEST_CASE("a scene's own thresholds hold, and the command line wins over them") 
     CHECK(outcome.exit_code == 2);
     return outcome.errors;
   };
-  CHECK(complaint("--min-bit-equal 0.5") == "tandem: --min-bit-equal has no meaning in tier exact\n");
+  CHECK(complaint("--min-bit-equal 0.5").ends_with("tandem: --min-bit-equal has no meaning in tier exact\n"));
   CHECK(complaint("--tier statistical --classify").find("--classify cannot be combined with --tier statistical") !=
         std::string::npos);
   write_text(folder.path() / "tiny.thresholds.json", R"({"rules": [{"metric": "bit_equal", "limit": 0.25}]})");
-  CHECK(complaint("") == "tandem: tiny.thresholds.json: rules[0] must have a reason\n");
+  CHECK(complaint("").ends_with("tandem: tiny.thresholds.json: rules[0] must have a reason\n"));
 }
 
 }  // namespace tandem::test
