@@ -89,10 +89,10 @@ GpuMaterial phong(MaterialModel model) {
 
 TANDEM_DEVICE_TEST("A shading normal changes no glossy lobe's energy: as a surface that leans by itself") {
   std::vector<GpuMaterial> materials;
-  for (const float roughness : {0.0f, 0.3f, 0.6f, 1.0f})
+  for (const float roughness : {0.0f, 0.5f, 1.0f})
     for (const GpuMaterial& material : {conductor(roughness), metal(roughness), glass(roughness), sheet(roughness)})
       materials.push_back(material);
-  for (const double degrees : {0.0, 20.0, 46.0, 60.0, 75.0, 85.0})
+  for (const double degrees : {20.0, 60.0, 85.0})
     for (std::size_t i = 0; i < materials.size(); ++i) {
       CAPTURE(degrees);
       CAPTURE(i);
@@ -106,7 +106,7 @@ TANDEM_DEVICE_TEST("A shading normal changes no glossy lobe's energy: as a surfa
 }
 
 TANDEM_DEVICE_TEST("A white metal under a leaning normal is white") {
-  for (const double degrees : {0.0, 40.0, 46.0, 50.0, 60.0, 70.0, 80.0})
+  for (const double degrees : {0.0, 46.0, 60.0, 80.0})
     for (const float roughness : {0.0f, 0.5f, 1.0f}) {
       CAPTURE(degrees);
       CAPTURE(roughness);
@@ -157,7 +157,7 @@ TANDEM_DEVICE_TEST("The border of the shadow on a smooth ball of few faces is th
                   .radiance = glm::vec3(static_cast<float>(pi))}};
   faces.lights = ball.lights;
   constexpr std::uint32_t side = 64;
-  const Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 4}, .height = 1.6f};
+  const Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 4}, .height = 1.2f};
   const RenderSettings settings{
       .width = side, .height = side, .max_depth = 2, .camera = camera, .background = glm::vec3(0)};
   const Image of_faces = rendered(device_handle, faces, settings, 4);
@@ -165,6 +165,7 @@ TANDEM_DEVICE_TEST("The border of the shadow on a smooth ball of few faces is th
   double largest = 0;
   for (std::size_t i = 0; i < of_ball.pixels.size(); ++i)
     largest = std::max(largest, std::abs(double{of_faces.pixels[i].x} - double{of_ball.pixels[i].x}));
-  // The faces are up to 0.038 below the ball (1 - cos(pi / 16) twice), seen from the side up to a tenth beside it.
-  CHECK(largest < 0.12);
+  // Measured 0.016: the picture ends within the outline of the faces, which are up to 0.04 below the ball. A border
+  // that follows the faces is off by up to the cosine's change over one of them, 0.2.
+  CHECK(largest < 0.03);
 }
