@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -17,6 +19,17 @@ struct DispatchEdit {
   std::array<std::uint32_t, 3> size = {1, 1, 1};  ///< workgroups of a dispatch, invocations of a trace
 };
 
+using TriangleCorners = std::array<std::array<float, 3>, 3>;
+
+inline float longest_edge(const TriangleCorners& corners) {
+  float longest = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto &a = corners[i], &b = corners[(i + 1) % 3];
+    longest = std::max(longest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+  }
+  return longest;
+}
+
 /// What a faulty device does otherwise than it was told. Members that are empty change nothing.
 struct DeviceEdits {
   /// Changes a shader. False where there is nothing to change: the shader is then that of the device without the fault.
@@ -26,7 +39,7 @@ struct DeviceEdits {
   std::function<void(rhi::BottomLevelDesc& desc)> bottom_level;  ///< of builds and updates
   std::function<void(std::array<float, 3>& position)> vertex;    ///< of triangles, for builds and updates alone
   /// Triangles that structures are built without; their indices must have come to the buffer by an upload.
-  std::function<bool(const std::array<std::array<float, 3>, 3>& corners)> loses_triangle;
+  std::function<bool(const TriangleCorners& corners)> loses_triangle;
   std::function<void(std::array<float, 6>& box)> box;                 ///< likewise
   std::function<void(rhi::InstanceDesc& instance)> instance;          ///< likewise
   std::function<void(std::uint32_t& instance_count)> instance_count;  ///< likewise

@@ -23,8 +23,6 @@ using namespace tandem::test;
 
 namespace {
 
-using Corners = std::array<std::array<float, 3>, 3>;
-
 struct Place {
   double scale = 1;   ///< units of the scene for each of the model
   double origin = 0;  ///< of the model, in x; -0.7 times as much in z
@@ -56,15 +54,6 @@ std::string model(const Place& place) {
          "usemtl lamp\nf 11 12 13 14\n";
 }
 
-float longest_edge(const Corners& corners) {
-  float longest = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto &a = corners[i], &b = corners[(i + 1) % 3];
-    longest = std::max(longest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
-  }
-  return longest;
-}
-
 /// Compares devices at several places with the same programs.
 class Places {
  public:
@@ -88,7 +77,7 @@ class Places {
     const auto split = static_cast<float>(4 * place.scale);
     for (const bool loses_large : {true, false}) {
       CAPTURE(loses_large);
-      *lost_ = [&](const Corners& corners) { return (longest_edge(corners) > split) == loses_large; };
+      *lost_ = [&](const TriangleCorners& corners) { return (longest_edge(corners) > split) == loses_large; };
       const compare::Comparison bad = compared(bad_, scene);
       CHECK(bad.classification->mismatches() > 0);
       CHECK(bad.verdict.outcome == compare::Outcome::differ);
@@ -102,7 +91,7 @@ class Places {
  private:
   DeviceEdits edits() const {
     DeviceEdits edits;
-    edits.loses_triangle = [lost = lost_](const Corners& corners) { return (*lost)(corners); };
+    edits.loses_triangle = [lost = lost_](const TriangleCorners& corners) { return (*lost)(corners); };
     return edits;
   }
 
@@ -116,7 +105,8 @@ class Places {
     return compare::compare_devices(devices, job, options);
   }
 
-  std::shared_ptr<std::function<bool(const Corners&)>> lost_ = std::make_shared<std::function<bool(const Corners&)>>();
+  std::shared_ptr<std::function<bool(const TriangleCorners&)>> lost_ =
+      std::make_shared<std::function<bool(const TriangleCorners&)>>();
   rhi::DeviceHandle exact_;
   compare::ComparedDevices good_, bad_;
 };

@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -16,18 +14,7 @@ namespace {
 constexpr std::size_t direction_operand = 6;
 constexpr std::size_t t_max_operand = 7;
 
-using Corners = std::array<std::array<float, 3>, 3>;
-
-float longest_edge(const Corners& corners) {
-  float longest = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto &a = corners[i], &b = corners[(i + 1) % 3];
-    longest = std::max(longest, std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
-  }
-  return longest;
-}
-
-DeviceEdits losing(std::function<bool(const Corners&)> lost) {
+DeviceEdits losing(std::function<bool(const TriangleCorners&)> lost) {
   DeviceEdits edits;
   edits.loses_triangle = std::move(lost);
   return edits;
@@ -73,11 +60,11 @@ DeviceEdits missing_one_in(std::uint32_t count, const std::string& function) {
 std::vector<Fault> surface_faults() {
   FaultList faults;
   faults.add("large-triangles-missed", "triangles of more than 100,000 units are missed", wide_scene,
-             losing([](const Corners& corners) { return longest_edge(corners) > 1e5f; }), "ray", {"answer"});
+             losing([](const TriangleCorners& corners) { return longest_edge(corners) > 1e5f; }), "ray", {"answer"});
   faults.add("small-triangles-missed", "triangles of less than half a unit are missed", wide_scene,
-             losing([](const Corners& corners) { return longest_edge(corners) < 0.5f; }), "ray", {"answer"});
+             losing([](const TriangleCorners& corners) { return longest_edge(corners) < 0.5f; }), "ray", {"answer"});
   faults.add("region-missed", "triangles on one side of the scene are missed", wide_scene,
-             losing([](const Corners& corners) {
+             losing([](const TriangleCorners& corners) {
                return std::ranges::all_of(corners, [](const auto& corner) { return corner[0] > 0 && corner[0] < 10; });
              }),
              "ray", {"answer"});
