@@ -13,6 +13,8 @@ Rendering render(pathtracer::Renderer& renderer, std::uint32_t samples, const St
   const pathtracer::SceneOnDevice& scene = renderer.scene();
   const rhi::DeviceInfo& device = scene.device().info();
   compile(renderer, progress);
+  // The clock of whoever shows the progress starts here: the first dispatch is part of what it estimates from.
+  if (progress && !progress(device.name, 0)) throw Cancelled();
   if (!renderer.render(samples, stage_of(progress, device.name))) throw Cancelled();
   return {.image = renderer.image(),
           .device = device,

@@ -109,11 +109,6 @@ bool Renderer::render(std::uint32_t samples, const Progress& progress) {
   if (samples > std::numeric_limits<std::uint32_t>::max() - samples_)
     throw Error(fmt::format("{} samples after {} are more than can be counted", samples, samples_));
   warm_up();
-  // The clock of whoever shows the progress starts here: the first dispatch is part of what it estimates from.
-  if (progress && !progress(0)) {
-    clear_picture();
-    return false;
-  }
   const RenderSettings& settings = scene_.settings();
   const glm::uvec2 resolution(settings.width, settings.height);
   const double pixels = double(resolution.x) * double(resolution.y);
