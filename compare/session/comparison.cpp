@@ -23,7 +23,7 @@ ComparedDevices with_programs(rhi::DeviceHandle a, rhi::DeviceHandle b, rhi::Dev
   return devices;
 }
 
-Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options, const StageProgress& progress) {
+Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options) {
   if (options.classify && !devices.arbiter) throw std::invalid_argument("prepare: classify takes an arbiter");
   if (options.classify && options.thresholds.tier == Tier::statistical)
     throw std::invalid_argument("prepare: tier statistical has no paths to classify");
@@ -35,8 +35,6 @@ Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& optio
   std::optional<pathtracer::SceneOnDevice> arbiter;
   if (options.classify)
     arbiter.emplace(devices.arbiter, job.scene, job.settings, std::nullopt, devices.programs_arbiter);
-  compile(a, progress);
-  compile(b, progress);
   JobSummary job_summary = summary(job);
   return {.options = options,
           .summary = std::move(job_summary),
@@ -50,6 +48,8 @@ Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& optio
 Comparison compare_devices(Session& session, const StageProgress& progress) {
   const ComparisonOptions& options = session.options;
   const Job& job = session.job;
+  compile(session.a, progress);
+  compile(session.b, progress);
   Comparison result;
   result.job = session.summary;
   result.thresholds = options.thresholds;
@@ -92,7 +92,7 @@ Comparison compare_devices(Session& session, const StageProgress& progress) {
 
 Comparison compare_devices(ComparedDevices devices, Job job, const ComparisonOptions& options,
                            const StageProgress& progress) {
-  Session session = prepare(std::move(devices), std::move(job), options, progress);
+  Session session = prepare(std::move(devices), std::move(job), options);
   return compare_devices(session, progress);
 }
 

@@ -69,14 +69,13 @@ struct Session {
   std::optional<pathtracer::SceneOnDevice> arbiter;  ///< where paths are to be classified
 };
 
-/// Uploads the scene to every device and compiles its shaders, so that what one of them refuses does not cost a
+/// Uploads the scene to every device, so that what one of them refuses does not cost a
 /// rendering on another. Throws Error and rhi::Error; std::invalid_argument for `classify` without an arbiter or in
 /// tier statistical, where every path of a and b is another.
-/// @param progress its stages are "compiling shaders for" the devices. Throws Cancelled.
-Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options = {},
-                const StageProgress& progress = {});
+Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options = {});
 
-/// Renders on both devices, measures, classifies, and gives the verdict: all that the options ask for.
+/// Compiles the shaders, renders on both devices, measures, classifies, and gives the verdict: all that the options ask
+/// for.
 /// @param progress its stages are the devices' names and "classification". Throws Cancelled, rhi::Error.
 Comparison compare_devices(Session& session, const StageProgress& progress = {});
 

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <regex>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -132,7 +133,10 @@ Outcome run_program(const std::filesystem::path& program, const std::vector<std:
 }
 
 Outcome run_tandem(const std::vector<std::string>& arguments, const ProcessOptions& options) {
-  return run_program(TANDEM_BINARY, arguments, options);
+  Outcome outcome = run_program(TANDEM_BINARY, arguments, options);
+  static const std::regex waiting("tandem: [^\n]*: ([0-9]+ s so far|[0-9]+ % after [0-9]+ s)\n");
+  outcome.errors = std::regex_replace(outcome.errors, waiting, "");
+  return outcome;
 }
 
 Outcome run_in_shell(const std::string& line, ProcessOptions options) {

@@ -32,7 +32,8 @@ std::vector<std::string> words(std::string_view line, std::initializer_list<std:
 Outcome run_program(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                     const ProcessOptions& options = {});
 
-/// Runs `tandem ARGUMENTS...`.
+/// Runs `tandem ARGUMENTS...`. Lines of its errors that say what it waits for ("tandem: compiling shaders for vulkan:
+/// 30 s so far") are left out: how many there are depends on the machine.
 Outcome run_tandem(const std::vector<std::string>& arguments, const ProcessOptions& options = {});
 
 /// Runs `tandem LINE`. Arguments that may have spaces, as paths may, are given by words().

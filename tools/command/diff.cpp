@@ -153,8 +153,7 @@ int diff(const Options& options) {
   compare::Job job = load_job(options.render);
   compare::ComparisonOptions wanted = comparison_options(options.comparison, options.render);
   if (!options.report.empty()) wanted = with_metrics_for_page(wanted);
-  const StageProgress bars = progress_bars();
-  compare::Session session = prepare(open_devices(options.comparison, options.render), std::move(job), wanted, bars);
+  compare::Session session = prepare(open_devices(options.comparison, options.render), std::move(job), wanted);
   if (baseline) {
     if (wanted.thresholds.tier == compare::Tier::statistical)
       throw Error("--baseline cannot be combined with --tier statistical: its images have other samples");
@@ -169,7 +168,7 @@ int diff(const Options& options) {
   const std::optional<OutputFolder> folder = output_folder(options.folder);
   const std::optional<OutputFolder> page_folder = output_folder(options.report);
   check_output_files(files);
-  findings.comparison = compare_devices(session, bars);
+  findings.comparison = compare_devices(session, progress_bars());
   if (baseline) findings.baseline = compare_with(*baseline, findings.comparison);
   print_warnings(findings.comparison.a.warnings);
   print("{}", table(findings.comparison));

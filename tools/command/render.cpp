@@ -73,13 +73,13 @@ int render_image(const Options& options) {
                           pathtracer::write_image(path, rendering.image, rendering.metadata, options.tone, layers);
                         }};
   write_or_rescue({&file, 1});
-  constexpr double worth_mentioning = 1000;
-  if (rendering.compile_milliseconds > worth_mentioning)
-    print("shaders for {} compiled in {:.1f} s\n", rendering.device.name, rendering.compile_milliseconds / 1000);
   print("{}: {}x{}, {} spp on {} ({}, {}) in {:.1f} ms, {:.3f} Mrays/s\n", options.output.string(), job.settings.width,
         job.settings.height, job.samples, rendering.device.name, rendering.device.description,
         pathtracer::name(rendering.trace), rendering.milliseconds,
         per_second_in_millions(static_cast<double>(rendering.rays), rendering.milliseconds));
+  constexpr double worth_mentioning = 1000;
+  if (rendering.compile_milliseconds > worth_mentioning)
+    print("shaders for {} compiled in {:.1f} s\n", rendering.device.name, rendering.compile_milliseconds / 1000);
   return exit_code::success;
 }
 

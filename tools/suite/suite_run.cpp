@@ -100,9 +100,8 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, compare::Comparison& compar
   if (!fresh_)
     if (std::optional<Json> earlier = read_result(folder_, cell_path(cell, ".json"), key))
       return {.json = std::move(*earlier), .reused = true};
-  const StageProgress bars = progress_bars();
-  compare::Session session = prepare(std::move(devices), std::move(job), options, bars);
-  comparison = compare_devices(session, bars);
+  compare::Session session = prepare(std::move(devices), std::move(job), options);
+  comparison = compare_devices(session, progress_bars());
   const Json report = to_json(comparison);
   if (cell.report) page = report_page(session, comparison, json_text(report));
   const std::vector<std::string>& reasons = comparison.verdict.reasons;
