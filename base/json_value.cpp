@@ -178,17 +178,29 @@ std::vector<std::pair<std::string, Value>> Value::members() const {
   return result;
 }
 
-Object::Object(Value value, std::vector<std::string> keys) : value_(std::move(value)), keys_(std::move(keys)) {
-  for (const auto& [key, member] : value_.members())
-    if (!knows(key)) member.fail(fmt::format("is not known; known here are: {}", fmt::join(keys_, ", ")));
+Object::Object(Value value, std::vector<std::string> keys, std::vector<OldName> old_names)
+    : value_(std::move(value)), keys_(std::move(keys)), old_names_(std::move(old_names)) {
+  const auto members = value_.members();
+  const auto is_member = [&](const std::string& key) {
+    return std::ranges::any_of(members, [&](const auto& member) { return member.first == key; });
+  };
+  for (const auto& [name, member] : members) {
+    const auto old = std::ranges::find(old_names_, name, &OldName::old);
+    if (old != old_names_.end() && is_member(old->key))
+      member.fail(fmt::format("is the old name of {}, which is there too", old->key));
+    if (old == old_names_.end() && !knows(name))
+      member.fail(fmt::format("is not known; known here are: {}", fmt::join(keys_, ", ")));
+  }
 }
 
 bool Object::knows(const std::string& key) const { return std::ranges::find(keys_, key) != keys_.end(); }
 
 std::optional<Value> Object::get(const std::string& key) const {
   if (!knows(key)) throw std::logic_error("undeclared member " + key);
-  for (const auto& [name, member] : value_.members())
-    if (name == key) return member;
+  for (const auto& [name, member] : value_.members()) {
+    const auto old = std::ranges::find(old_names_, name, &OldName::old);
+    if (name == key || (old != old_names_.end() && old->key == key)) return member;
+  }
   return std::nullopt;
 }
 

@@ -96,8 +96,15 @@ class Value {
 /// An object whose members have fixed names.
 class Object {
  public:
-  /// Throws Error when the value is no object or has a member that is not among `keys`, which the sentence then lists.
-  Object(Value value, std::vector<std::string> keys);
+  /// A key and the name that it had before, which files may still use.
+  struct OldName {
+    std::string old;
+    std::string key;
+  };
+
+  /// Throws Error when the value is no object, has a member that is not among `keys`, which the sentence then lists, or
+  /// has one twice, by both of its names.
+  Object(Value value, std::vector<std::string> keys, std::vector<OldName> old_names = {});
 
   const Value& value() const noexcept { return value_; }
   bool knows(const std::string& key) const;  ///< it is among `keys`
@@ -117,6 +124,7 @@ class Object {
  private:
   Value value_;
   std::vector<std::string> keys_;
+  std::vector<OldName> old_names_;
 };
 
 /// The member "type" of an object, which decides which other members it may have. @param fallback where it is absent;

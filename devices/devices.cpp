@@ -21,16 +21,19 @@ std::vector<rhi::DeviceInfo> enumerate_devices(const rhi::MessageCallback& on_me
   return devices;
 }
 
+bool is_device_name(std::string_view word) {
+  return std::ranges::count(cpu::device_names(), word) > 0 || word == "vulkan" || word.starts_with("vulkan:");
+}
+
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   const std::string_view name = desc.name;
-  const std::span<const std::string_view> cpu_names = cpu::device_names();
-  if (std::find(cpu_names.begin(), cpu_names.end(), name) != cpu_names.end()) {
+  if (std::ranges::count(cpu::device_names(), name) > 0) {
     std::vector<cpu::PrecompiledKernel> kernels;
     for (const std::span<const cpu::PrecompiledKernel> some : {shaders::kernels(), probe_shaders::kernels()})
       kernels.insert(kernels.end(), some.begin(), some.end());
     return cpu::create_device(desc, kernels);
   }
-  if (name == "vulkan" || name.starts_with("vulkan:")) return vulkan::create_device(desc);
+  if (is_device_name(name)) return vulkan::create_device(desc);
   std::vector<std::string> names;
   for (const rhi::DeviceInfo& device : enumerate_devices()) names.push_back(device.name);
   throw rhi::Error(rhi::ErrorCode::no_such_device, name,

@@ -3,10 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <new>
+#include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "base/progress.hpp"
 #include "tools/command.hpp"
+#include "tools/options/option_words.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/print.hpp"
 
@@ -31,6 +35,12 @@ int run(int argc, char** argv) {
       "wrong (explain, conformance); 2 any error, with one sentence on standard error; 3 the images differ for "
       "reasons\n"
       "that the scene owns (diff, gallery, suite); 130 interrupted.\n"
+      "Environment variables:\n"
+      "  TANDEM_CACHE_DIR     Folder of shaders compiled for the CPU devices [$XDG_CACHE_HOME/tandem, "
+      "~/.cache/tandem]\n"
+      "  TANDEM_CACHE_MAX_MB  Maximum size of that folder in MiB [256]\n"
+      "  TANDEM_CXX           C++ compiler for shaders that are not built in [c++, g++ or clang++ on PATH]\n"
+      "  TANDEM_IMAGE_CODEC   File of the library that reads and writes images [that of the installation]\n"
       "'tandem COMMAND --help' describes a command and its options.");
   Action action;
   add_devices_command(app, action);
@@ -51,7 +61,9 @@ int run(int argc, char** argv) {
     return fail(fmt::format("'{}' is not a command; {}", argv[1], hint));
   }
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words = option_words(std::span(argv, static_cast<std::size_t>(argc)).subspan(1));
+    std::ranges::reverse(words);  // as CLI11 takes them
+    app.parse(std::move(words));
   } catch (const CLI::Success& request) {
     return app.exit(request);  // --help and --version
   } catch (const CLI::ParseError& error) {

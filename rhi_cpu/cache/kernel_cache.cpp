@@ -1,5 +1,6 @@
 #include "rhi_cpu/cache/kernel_cache.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -98,36 +99,32 @@ std::uint64_t kernel_cache_bound(const rhi::MessageCallback& on_message) {
 
 KernelCache::KernelCache(fs::path folder, rhi::MessageCallback on_message)
     : on_message_(std::move(on_message)), bound_(kernel_cache_bound(on_message_)) {
-  folder_ = wanted_folder(std::move(folder));
-  std::string why_not;
-  if (!folder_.empty() && prepare(folder_, why_not)) return;
-  const std::string wanted = folder_.empty() ? "no folder for compiled kernels is known (HOME is not set)"
-                                             : fmt::format("the folder {} {}", folder_.string(), why_not);
+  const fs::path wanted = wanted_folder(std::move(folder));
+  std::string problem = "no folder for compiled kernels is known (HOME is not set)";
+  if (!wanted.empty()) {
+    problem = prepare(wanted);
+    if (problem.empty()) return;
+    problem = fmt::format("the folder {} {}", wanted.string(), problem);
+  }
   std::error_code ignored;
-  folder_ = make_private_folder(fs::temp_directory_path(ignored) / "tandem-");
-  if (folder_.empty())
+  fallback_ = TemporaryFolder(make_private_folder(fs::temp_directory_path(ignored) / "tandem-"));
+  const std::string temporary_problem =
+      fallback_.path().empty() ? std::strerror(errno) : prepare(fs::absolute(fallback_.path()));
+  if (!temporary_problem.empty())
     throw rhi::Error(rhi::ErrorCode::io, message_source,
-                     wanted + ", and no temporary folder can be made either; set TANDEM_CACHE_DIR to one that can");
-  fallback_ = TemporaryFolder(folder_);
-  say(rhi::Severity::warning, wanted + "; kernels compiled now are lost when the program ends");
+                     fmt::format("{}, and a temporary folder cannot be used either ({}); set TANDEM_CACHE_DIR to a "
+                                 "folder that only you can write",
+                                 problem, temporary_problem));
+  say(rhi::Severity::warning, problem + "; kernels compiled now are lost when the program ends");
 }
 
-bool KernelCache::prepare(const fs::path& folder, std::string& why_not) const {
-  std::error_code error;
-  const bool is_new = fs::create_directories(folder, error);
-  if (!error && is_new) fs::permissions(folder, fs::perms::owner_all, error);
-  if (error) {
-    why_not = "cannot be created: " + error.message();
-    return false;
-  }
-  if ((fs::status(folder, error).permissions() & fs::perms::others_write) != fs::perms::none) {
-    why_not = "may be written by everybody, so that nothing in it can be trusted";
-    return false;
-  }
-  const TemporaryFolder probe(make_private_folder(folder / "work-"));
-  if (!probe.path().empty()) return true;
-  why_not = fmt::format("cannot be written: {}", std::strerror(errno));
-  return false;
+/// Makes the folder the cache's. @return why it cannot be, "" if it is
+std::string KernelCache::prepare(const fs::path& folder) {
+  auto opened = PrivateFolder::open(folder);
+  if (std::string* const problem = std::get_if<std::string>(&opened)) return std::move(*problem);
+  folder_ = std::move(std::get<PrivateFolder>(opened));
+  const TemporaryFolder probe(make_private_folder(folder_->path() / "work-"));
+  return probe.path().empty() ? fmt::format("cannot be written: {}", std::strerror(errno)) : std::string();
 }
 
 KernelCacheStatistics KernelCache::statistics() const {
@@ -135,39 +132,45 @@ KernelCacheStatistics KernelCache::statistics() const {
 }
 
 KernelLibraryHandle KernelCache::find(const ContentHash& key, const std::string& label) {
-  const fs::path path = folder_ / (key.hex() + ".so");
-  std::error_code error;
-  if (!fs::exists(path, error)) return nullptr;
-  std::string problem = "it is damaged";
-  if (kernel_file_is_sound(path, key)) {
-    auto loaded = load_kernel_library(path);
-    if (const auto* library = std::get_if<KernelLibraryHandle>(&loaded)) {
-      fs::last_write_time(path, fs::file_time_type::clock::now(), error);
-      ++hits_;
-      say(rhi::Severity::info, fmt::format("{}: loaded {}", label, path.string()));
-      return *library;
+  const std::string name = key.hex() + ".so";
+  const PrivateFile file = folder_->open_file(name);
+  if (!file.descriptor && file.problem.empty()) return nullptr;
+  const fs::path path = folder() / name;
+  std::string problem = "it " + file.problem;
+  if (file.descriptor) {
+    problem = "it is damaged";
+    if (kernel_file_is_sound(file.descriptor.get(), key)) {
+      auto loaded = load_kernel_library(file.descriptor.get());
+      if (const auto* library = std::get_if<KernelLibraryHandle>(&loaded)) {
+        ::futimens(file.descriptor.get(), nullptr);
+        ++hits_;
+        say(rhi::Severity::info, fmt::format("{}: loaded {}", label, path.string()));
+        return *library;
+      }
+      problem = std::get<std::string>(loaded);
     }
-    problem = std::get<std::string>(loaded);
   }
-  fs::remove(path, error);
+  std::error_code ignored;
+  fs::remove_all(path, ignored);
   ++damaged_;
   say(rhi::Severity::info, fmt::format("{}: {} is compiled anew: {}", label, path.string(), problem));
   return nullptr;
 }
 
 TemporaryFolder KernelCache::make_work_folder(const std::string& label) {
-  TemporaryFolder folder(make_private_folder(folder_ / "work-"));
+  TemporaryFolder folder(make_private_folder(folder_->path() / "work-"));
   if (folder.path().empty())
     throw rhi::Error(rhi::ErrorCode::io, label,
                      fmt::format("the kernel cache {} cannot be written: {}; set TANDEM_CACHE_DIR to a folder that can",
-                                 folder_.string(), std::strerror(errno)));
+                                 folder_->path().string(), std::strerror(errno)));
   return folder;
 }
 
 KernelLibraryHandle KernelCache::add(const ContentHash& key, const fs::path& library, const std::string& label) {
-  const fs::path path = folder_ / (key.hex() + ".so");
+  const fs::path path = folder() / (key.hex() + ".so");
+  const FileDescriptor file(::open(library.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
   std::error_code error;
-  if (seal_kernel_file(library, key))
+  if (file && seal_kernel_file(file.get(), key))
     fs::rename(library, path, error);
   else
     error = std::make_error_code(std::errc::io_error);
@@ -175,7 +178,7 @@ KernelLibraryHandle KernelCache::add(const ContentHash& key, const fs::path& lib
     throw rhi::Error(rhi::ErrorCode::io, label,
                      fmt::format("the compiled kernel {} cannot be written: {}", path.string(), error.message()));
   ++added_;
-  auto loaded = load_kernel_library(path);
+  auto loaded = load_kernel_library(file.get());
   if (const auto* problem = std::get_if<std::string>(&loaded))
     throw rhi::Error(rhi::ErrorCode::io, label,
                      fmt::format("the compiled kernel cannot be loaded: {}; if its folder does not allow programs to "
@@ -186,7 +189,7 @@ KernelLibraryHandle KernelCache::add(const ContentHash& key, const fs::path& lib
 }
 
 fs::path KernelCache::keep_failure(TemporaryFolder folder, const ContentHash& key) {
-  fs::path kept = folder_ / ("failed-" + key.hex());
+  fs::path kept = folder_->path() / ("failed-" + key.hex());
   std::error_code error;
   fs::remove_all(kept, error);
   fs::rename(folder.path(), kept, error);
@@ -201,7 +204,7 @@ void KernelCache::enforce_bound(const fs::path& newest) {
   std::vector<Entry> entries;
   std::uint64_t sum = 0;
   std::error_code error;
-  for (fs::directory_iterator item(folder_, error), end; !error && item != end; item.increment(error)) {
+  for (fs::directory_iterator item(folder(), error), end; !error && item != end; item.increment(error)) {
     std::error_code gone;
     const fs::file_time_type used = item->last_write_time(gone);
     if (gone) continue;

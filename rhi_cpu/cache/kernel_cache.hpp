@@ -3,12 +3,14 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "rhi/message.hpp"
 #include "rhi_cpu/cache/content_hash.hpp"
 #include "rhi_cpu/cache/kernel_library.hpp"
+#include "rhi_cpu/cache/private_folder.hpp"
 
 namespace tandem::cpu {
 
@@ -42,16 +44,18 @@ struct KernelCacheStatistics {
 
 /// The folder of kernels compiled at run time, one file KEY.so each. Any number of processes and threads may use it at
 /// once: files appear whole, by rename, and are never changed afterwards; each ends with a seal (key and checksum) that
-/// is checked before the file is loaded. Whatever is not right is removed and counts as not there.
+/// is checked before the file is loaded. The file that was checked is the one that is loaded. Whatever is not right, or
+/// not this user's, is removed and counts as not there.
 class KernelCache {
  public:
-  /// Opens or creates the folder. When it cannot be written, or when every user of the machine may write it (its files
-  /// are executed), a temporary folder that lives as long as the object takes its place, with a warning.
+  /// Opens or creates the folder. When it cannot be written, or when others could change what is in it (its files are
+  /// executed; see PrivateFolder), a temporary folder that lives as long as the object takes its place, with a warning.
   /// @param folder as DeviceDesc::kernel_cache: empty for $TANDEM_CACHE_DIR, else $XDG_CACHE_HOME/tandem, else
   ///        ~/.cache/tandem
   explicit KernelCache(std::filesystem::path folder, rhi::MessageCallback on_message = {});
 
-  const std::filesystem::path& folder() const noexcept { return folder_; }
+  /// Without symbolic links.
+  const std::filesystem::path& folder() const noexcept { return folder_->path(); }
   KernelCacheStatistics statistics() const;
 
   /// The library of that key, loaded and marked as used now; nothing when there is none that is whole.
@@ -68,14 +72,14 @@ class KernelCache {
   std::filesystem::path keep_failure(TemporaryFolder folder, const ContentHash& key);
 
  private:
-  bool prepare(const std::filesystem::path& folder, std::string& why_not) const;
+  std::string prepare(const std::filesystem::path& folder);
   void enforce_bound(const std::filesystem::path& newest);
   void say(rhi::Severity severity, const std::string& text) const;
 
   rhi::MessageCallback on_message_;
   TemporaryFolder fallback_;
-  std::filesystem::path folder_;
-  std::uint64_t bound_;  ///< bytes
+  std::optional<PrivateFolder> folder_;  ///< set by the constructor
+  std::uint64_t bound_;                  ///< bytes
   std::atomic<std::uint64_t> hits_ = 0;
   std::atomic<std::uint64_t> added_ = 0;
   std::atomic<std::uint64_t> damaged_ = 0;

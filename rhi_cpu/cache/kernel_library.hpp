@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <variant>
@@ -28,7 +27,9 @@ class KernelLibrary {
 
 using KernelLibraryHandle = std::shared_ptr<const KernelLibrary>;
 
-/// Loads the library of a kernel, or says in a few words why it is none that this program can run.
-std::variant<KernelLibraryHandle, std::string> load_kernel_library(const std::filesystem::path& path);
+/// Loads the library of a kernel, or says in a few words why it is none that this program can run. What the descriptor
+/// stands for is loaded, not what has its name by now. Needs /proc.
+/// @param file open for reading; it may be closed afterwards
+std::variant<KernelLibraryHandle, std::string> load_kernel_library(int file);
 
 }  // namespace tandem::cpu

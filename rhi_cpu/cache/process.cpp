@@ -9,28 +9,12 @@
 #include <cerrno>
 #include <string_view>
 
+#include "base/file_descriptor.hpp"
+
 extern char** environ;
 
 namespace tandem::cpu {
 namespace {
-
-/// A file descriptor, closed at the end of its life.
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int value) : value_(value) {}
-  ~FileDescriptor() { close(); }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-
-  int get() const { return value_; }
-  void close() {
-    if (value_ >= 0) ::close(value_);
-    value_ = -1;
-  }
-
- private:
-  int value_;
-};
 
 /// What the child does between its start and the program: its input is empty, its two outputs are the pipe.
 class SpawnActions {

@@ -40,7 +40,7 @@ def description():
                          "marble": {"type": "noise", "scale": 3, "color_a": 0.1, "color_b": 0.9}},
             "media": {"mist": {"absorption": [0.3, 0.1, 0.02], "scattering": 2.5}},
             "environment": {"radiance": [0.6, 0.75, 1]},
-            "camera": {"position": [13, 2, 5], "target": [0, 0.4, 0], "vertical_fov": 22, "lens_radius": 0.05,
+            "camera": {"position": [13, 2, 5], "target": [0, 0.4, 0], "fov": 22, "lens_radius": 0.05,
                        "focus_distance": 12}}
 
 

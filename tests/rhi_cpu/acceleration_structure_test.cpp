@@ -10,6 +10,7 @@
 #include "rhi_cpu/device.hpp"
 #include "rhi_cpu/kernel/trace.hpp"
 #include "tests/support/device_test.hpp"
+#include "tests/support/few_ulp.hpp"
 
 // Builds, updates and compaction on the devices of rhi_cpu, seen by a kernel that is a C++ function: it asks for the
 // closest triangle or box along the z axis.
@@ -72,6 +73,7 @@ class Probe {
 
   rhi::Device& device() const { return *device_; }
 
+  /// Where the ray meets the scene, or `nothing`.
   float distance(const rhi::AccelerationStructureHandle& scene) const {
     const rhi::BufferHandle result = test::buffer_of(*device_, std::vector<float>{0}, "distance");
     const rhi::BindGroupHandle group = device_->create_bind_group(
@@ -82,7 +84,7 @@ class Probe {
     submit([&](rhi::CommandList& list) {
       list.dispatch({.pipeline = pipeline_, .bind_groups = {group}, .workgroup_count = {1, 1, 1}});
     });
-    return test::contents<float>(*device_, result, 1)[0];
+    return test::whole_if_close(test::contents<float>(*device_, result, 1)[0]);
   }
 
   template <typename Record>

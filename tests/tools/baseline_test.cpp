@@ -31,6 +31,7 @@ TEST_CASE("a run agrees with the stored one in every bit, and what changed since
   CHECK(same.errors == "");
   CHECK(same.exit_code == 0);
   CHECK(same.output.find("changed           nothing\n") != std::string::npos);
+  CHECK(same.output.find("in all            agree\n") != std::string::npos);
   nlohmann::json baseline = read_json(folder.path() / "x.json").at("baseline");
   CHECK(baseline.at("verdict") == "agree");
   CHECK(baseline.at("a").at("bit_equal") == 1.0);
@@ -62,6 +63,8 @@ TEST_CASE("a picture that is no longer the stored one is exit code 1, and it is 
   pathtracer::write_image(folder.path() / "run/b.exr", image, {});
   const Outcome outcome = diff(folder, scenes + "cornell_box.obj", "--baseline run --json x.json --junit x.xml");
   CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.find("nothing") == std::string::npos);
+  CHECK(outcome.output.find("in all            differ: b and its baseline\n") != std::string::npos);
   const nlohmann::json json = read_json(folder.path() / "x.json");
   CHECK(json.at("verdict") == "agree");  // of a and b today
   CHECK(json.at("baseline").at("verdict") == "differ");

@@ -120,6 +120,11 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
       {{"diff", box, "--a", "cpu", "--b", "cpu", "--min-bit-equal", "1.5"},
        "--min-bit-equal: '1.5' is not a number from 0 to 1"},
       {{"bench", box}, "--device is required"},
+      {{"render", box, "-o", "x.png", "--device", "cpu,vulkan"}, "--device: one device is taken, not 2; 'tandem diff'"},
+      {{"render", box, "-o", "x.png", "--device", "cpu", "vulkan"}, "--device: one device is taken, not 2"},
+      {{"diff", box, "--device", "cpu"}, "--device: two devices are compared, not 1"},
+      {{"diff", box, "--device", "cpu", "cpu", "vulkan"}, "not 3; 'tandem matrix' compares more"},
+      {{"diff", box, "--device", "cpu,cpu", "--b", "cpu"}, "--b excludes --device"},
       {{"bench", box, "--device", "cpu", "--repeat", "0"}, "--repeat: '0' is not a whole number from 1"},
       {{"bench", box, "--device", "cpu", "--json", "/dev/null"}, "/dev/null"},
       {{"conformance", "--filter", "teapot.*"}, "no case matches 'teapot.*'"},
@@ -154,6 +159,30 @@ TEST_CASE("without a Vulkan driver the error is one sentence, and the CPU device
   CHECK(vulkan.errors == "tandem: no Vulkan driver is installed\n");
   CHECK(cpu.exit_code == 0);
   CHECK(cpu.errors == "");
+}
+
+TEST_CASE("devices are named in one way by all commands, and settings by one name or its old one") {
+  const ScratchFolder folder;
+  const auto code = [&](const std::string& line) {
+    CAPTURE(line);
+    const Outcome outcome = run_tandem(words(line, {box}), {.folder = folder.path()});
+    CHECK(outcome.errors == "");
+    return outcome.exit_code;
+  };
+  const std::string small = " --size 8x8 --spp 1";
+  // The scene may follow the devices.
+  CHECK(code("diff --device cpu cpu-exact {}" + small) == 0);
+  CHECK(code("diff --device cpu,cpu-exact {}" + small) == 0);
+  CHECK(code("diff --device=cpu cpu-exact {}" + small) == 0);
+  CHECK(code("diff --device cpu {} --device cpu-exact" + small) == 0);
+  CHECK(code("matrix --device cpu cpu-exact cpu {}" + small) == 0);
+  CHECK(code("bench --repeat 1 --device cpu cpu {}" + small) == 0);
+  CHECK(code("explain --pixel 1,1 --device cpu cpu-exact {}" + small) == 0);
+
+  CHECK(code("diff {} --device cpu cpu --size 8x8 --samples 3 --max-depth=2 --light-sampling off --json x.json") == 0);
+  const std::string json = read_text(folder.path() / "x.json");
+  for (const char* setting : {"\"spp\": 3,", "\"depth\": 2,", "\"nee\": false,"})
+    CHECK(json.find(setting) != std::string::npos);
 }
 
 TEST_CASE("a scene that cannot be used is one sentence and exit code 2") {

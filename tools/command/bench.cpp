@@ -8,6 +8,7 @@
 #include "compare/session/rendering.hpp"
 #include "pathtracer/render/renderer.hpp"
 #include "tools/command.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/messages.hpp"
@@ -61,6 +62,7 @@ int measure_speed(const Options& options) {
     const OutputFile file{options.json,
                           [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }};
     write_or_rescue({&file, 1});
+    print_written({&file, 1});
   }
   return exit_code::success;
 }
@@ -71,18 +73,13 @@ void add_bench_command(CLI::App& app, Action& action) {
   CLI::App* const command = app.add_subcommand("bench", "Measure how fast devices render a scene, in alternating runs");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command
-      ->add_option("--device", options->devices,
-                   "Device to measure; repeat the option for each device. The first is the reference of the ratios")
-      ->required()
-      ->allow_extra_args(false)
-      ->type_name("D");
+  add_devices(*command, options->devices, "Devices to measure; the first is the reference of the ratios")->required();
   add_whole_number(*command, "--repeat", options->rounds, 1, 10'000, "Measured rounds, after one warm-up round");
   command->add_option("--json", options->json, "Write all measurements, round by round, as JSON")->type_name("FILE");
   command->footer(
       "Times are milliseconds on the device (by its timestamps where it has them), without loading and building.\n"
       "Example:\n"
-      "  tandem bench scenes/cornell_box.obj --device vulkan --device cpu --repeat 9 --json bench.json");
+      "  tandem bench scenes/cornell_box.obj --device vulkan,cpu --repeat 9 --json bench.json");
   command->callback([&action, options] { action = [options] { return measure_speed(*options); }; });
 }
 

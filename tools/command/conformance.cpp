@@ -14,6 +14,7 @@
 #include "conformance/kit/report.hpp"
 #include "devices/devices.hpp"
 #include "tools/command.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
@@ -112,9 +113,14 @@ int run_kit(const Options& options) {
     print("the required device '{}' is absent\n", required);
     good = false;
   }
-  if (!options.json.empty()) write_text(options.json, json_text(conformance::to_json(reports)));
-  if (!options.markdown.empty())
-    write_text(options.markdown, conformance::markdown(reports, cases, conformance::known_driver_bugs()));
+  std::vector<OutputFile> files;
+  const auto add_file = [&](const std::filesystem::path& path, const auto& text) {
+    if (!path.empty()) files.push_back({path, [text](const std::filesystem::path& name) { write_text(name, text()); }});
+  };
+  add_file(options.json, [&] { return json_text(conformance::to_json(reports)); });
+  add_file(options.markdown, [&] { return conformance::markdown(reports, cases, conformance::known_driver_bugs()); });
+  write_or_rescue(files);
+  print_written(files);
   return good ? exit_code::success : exit_code::failed;
 }
 
@@ -124,7 +130,7 @@ void add_conformance_command(CLI::App& app, Action& action) {
   CLI::App* const command =
       app.add_subcommand("conformance", "Check the ray tracing behaviour of a device, one case per behaviour");
   const auto options = std::make_shared<Options>();
-  command->add_option("--device", options->devices, "Device to check, repeatable [all devices]")->type_name("D");
+  add_devices(*command, options->devices, "Devices to check [all]");
   command
       ->add_option("--require-devices", options->required,
                    "Comma-separated devices without which the run fails; 'vulkan' is any Vulkan device")

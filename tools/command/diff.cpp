@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <memory>
@@ -15,12 +16,14 @@
 #include "pathtracer/image/image_io.hpp"
 #include "tools/command.hpp"
 #include "tools/options/comparison_options.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/output/junit.hpp"
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
+#include "tools/output/run_record.hpp"
 #include "tools/report/baseline.hpp"
 #include "tools/report/baseline_report.hpp"
 #include "tools/report/comparison_report.hpp"
@@ -34,6 +37,8 @@ namespace {
 struct Findings {
   compare::Comparison comparison;
   std::optional<Baseline> baseline;  ///< where a stored run was given
+  std::string date;
+  std::string command;  ///< the command line
 };
 
 struct Options {
@@ -72,9 +77,25 @@ std::vector<std::string> failures(const Findings& findings) {
   return sentences;
 }
 
+/// The verdict of the exit code, and whose it is.
+std::string overall_text(const Findings& findings) {
+  std::vector<std::string> causes;
+  const auto add = [&](const compare::Verdict& verdict, const char* what) {
+    if (verdict.outcome != compare::Outcome::agree) causes.emplace_back(what);
+  };
+  add(findings.comparison.verdict, "a and b");
+  add(findings.baseline->a.verdict, "a and its baseline");
+  add(findings.baseline->b.verdict, "b and its baseline");
+  const compare::Verdict overall{.outcome = outcome_of(findings), .reasons = {}};
+  return causes.empty() ? compare::name(overall)
+                        : fmt::format("{}: {}", compare::name(overall), fmt::join(causes, ", "));
+}
+
 std::string json_of(const Findings& findings) {
   nlohmann::ordered_json json = to_json(findings.comparison);
   if (findings.baseline) json["baseline"] = to_json(*findings.baseline);
+  json["date"] = findings.date;
+  json["command"] = findings.command;
   return json_text(json);
 }
 
@@ -168,13 +189,16 @@ int diff(const Options& options) {
   const std::optional<OutputFolder> folder = output_folder(options.folder);
   const std::optional<OutputFolder> page_folder = output_folder(options.report);
   check_output_files(files);
+  findings.date = date_text();
+  findings.command = command_line();
   findings.comparison = compare_devices(session, progress_bars());
   if (baseline) findings.baseline = compare_with(*baseline, findings.comparison);
   print_warnings(findings.comparison.a.warnings);
   print("{}", table(findings.comparison));
-  if (findings.baseline) print("\n{}", table(*findings.baseline));
+  if (findings.baseline) print("\n{}{:<18}{}\n", table(*findings.baseline), "in all", overall_text(findings));
   if (!options.report.empty()) page = report_page(session, findings.comparison, json_of(findings));
   write_or_rescue(files);
+  print_written(files);
   return exit_code_of(outcome_of(findings));
 }
 
@@ -185,10 +209,7 @@ void add_diff_command(CLI::App& app, Action& action) {
       app.add_subcommand("diff", "Render a scene on two devices and compare the images pixel by pixel");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("--a", options->comparison.a, "The first device, the reference")
-      ->type_name("D1")
-      ->capture_default_str();
-  command->add_option("--b", options->comparison.b, "The second device")->type_name("D2")->capture_default_str();
+  add_device_pair(*command, options->comparison.a, options->comparison.b);
   command->add_option("--json", options->json, "Write all numbers and the verdict as JSON")->type_name("FILE");
   command->add_option("--junit", options->junit, "Write the verdict as JUnit XML, for CI")->type_name("FILE");
   command

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "compare/session/explanation.hpp"
 #include "tools/command.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/options/render_options.hpp"
@@ -57,7 +58,12 @@ int run(const Options& options) {
   progress("tracing paths on all devices", 1);
   print_warnings(explanation.warnings);
   print("{}", table(explanation, {.all_events = options.all_events, .colors = isatty(STDOUT_FILENO) != 0}));
-  if (!options.json.empty()) write_text(options.json, json_text(to_json(explanation)));
+  if (!options.json.empty()) {
+    const OutputFile file{
+        options.json, [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(explanation))); }};
+    write_or_rescue({&file, 1});
+    print_written({&file, 1});
+  }
   return explanation.mismatches() == 0 ? exit_code::success : exit_code::differ;
 }
 
@@ -72,8 +78,7 @@ void add_explain_command(CLI::App& app, Action& action) {
   add_pixel(*command, "--pixel", explanation.pixel, "The pixel; 0,0 is the upper left corner")->required();
   add_whole_number(*command, "--sample", explanation.sample, 0, 0xffffffffU,
                    "Compare and show only this sample [compare all, show the first that differs]");
-  command->add_option("--a", options->a, "The first device, the reference")->type_name("D1")->capture_default_str();
-  command->add_option("--b", options->b, "The second device")->type_name("D2")->capture_default_str();
+  add_device_pair(*command, options->a, options->b);
   command->add_option("--arbiter", options->arbiter, "Device that decides which of two ray hits is right")
       ->type_name("D3")
       ->capture_default_str();

@@ -3,20 +3,27 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/progress.hpp"
 #include "compare/image/difference.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "tools/command.hpp"
 #include "tools/options/comparison_options.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
+#include "tools/options/shipped_file.hpp"
+#include "tools/output/interruption.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
+#include "tools/output/run_record.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/suite/gallery.hpp"
 
@@ -24,12 +31,12 @@ namespace tandem::tools {
 namespace {
 
 constexpr std::uint32_t largest_picture = 256;
-const char* const pictures_folder = "images/gallery";
 
 struct Options {
-  std::filesystem::path list = "scenes/gallery.json";
+  std::filesystem::path list = shipped_scene("gallery.json");
   std::filesystem::path folder = "gallery";
-  std::vector<std::string> devices = {"cpu", "vulkan"};
+  std::string a = "cpu";          ///< the first device, the reference
+  std::string b = "vulkan";       ///< the second
   std::vector<std::string> only;  ///< names; empty: all
   std::optional<glm::uvec2> size;
   std::optional<std::uint32_t> samples;  ///< in place of those of the list
@@ -53,9 +60,42 @@ GalleryResult render_scene(const GalleryScene& scene, const Options& options, co
   render_options.settings.samples = options.samples.value_or(scene.samples);
   ComparisonArguments arguments;
   arguments.comparison.thresholds = gallery_thresholds();
-  return {.scene = scene,
-          .comparison = compare_devices(devices, load_job(render_options),
-                                        comparison_options(arguments, render_options), progress_bars())};
+  GalleryResult result{.scene = scene,
+                       .comparison = compare_devices(devices, load_job(render_options),
+                                                     comparison_options(arguments, render_options), progress_bars())};
+  compare::Comparison& comparison = result.comparison;
+  result.picture = reduced(comparison.a.image, largest_picture);
+  result.difference = reduced(compare::heat_map(comparison.a.image, comparison.b.image), largest_picture);
+  comparison.a.image = comparison.b.image = {};
+  return result;
+}
+
+void print_line(const GalleryResult& result) {
+  const compare::Comparison& comparison = result.comparison;
+  print("{:<34}{:9.4f} % bit-equal  {}\n", result.scene.name, 100 * comparison.metrics.bit_equal,
+        compare::name(comparison.verdict));
+  for (const std::string& reason : comparison.verdict.reasons) print("{:<34}{}\n", "", reason);
+  std::fflush(stdout);
+}
+
+/// Pictures first, so that a page never shows one that is not there.
+std::vector<OutputFile> output_files(const Gallery& gallery, const std::filesystem::path& folder) {
+  std::vector<OutputFile> files;
+  for (const GalleryResult& result : gallery.results) {
+    const auto add_picture = [&](const std::filesystem::path& path, const pathtracer::Image& image) {
+      files.push_back(
+          {folder / path, [&image](const std::filesystem::path& name) { pathtracer::write_image(name, image, {}); }});
+    };
+    add_picture(picture_path(result.scene), result.picture);
+    add_picture(difference_path(result.scene), result.difference);
+  }
+  const auto add_text = [&](const char* name, const auto& text) {
+    files.push_back({folder / name, [text](const std::filesystem::path& path) { write_text(path, text()); }});
+  };
+  add_text("gallery.json", [&gallery] { return json_text(to_json(gallery)); });
+  add_text("gallery.md", [&gallery] { return gallery_markdown(gallery); });
+  add_text("index.html", [&gallery] { return gallery_html(gallery); });
+  return files;
 }
 
 int render_gallery(const Options& options) {
@@ -63,30 +103,38 @@ int render_gallery(const Options& options) {
   RenderOptions device_options;
   device_options.threads = options.threads;
   ComparisonArguments arguments;
-  arguments.a = options.devices.at(0);
-  arguments.b = options.devices.at(1);
+  arguments.a = options.a;
+  arguments.b = options.b;
   const compare::ComparedDevices devices = open_devices(arguments, device_options);
+  Gallery gallery{.results = {}, .listed = scenes.size(), .date = date_text(), .command = command_line()};
   const OutputFolder folder(options.folder);
-  const OutputFolder pictures(options.folder / pictures_folder);
-  std::vector<GalleryResult> results;
+  const OutputFolder pictures((folder.path() / picture_path(scenes.front())).parent_path());
+  check_output_files(output_files(gallery, folder.path()));
+  // Nothing is written before the end, and then what was rendered, whole: pages and pictures belong together.
+  const auto write_finished = [&](const char* what, const char* why) {
+    if (gallery.results.empty()) return std::string(why);
+    write_or_rescue(output_files(gallery, folder.path()));
+    return fmt::format("{} after {} of {} scenes, which '{}' shows{}{}", what, gallery.results.size(), scenes.size(),
+                       (folder.path() / "index.html").string(), *why == '\0' ? "" : ": ", why);
+  };
   for (const GalleryScene& scene : scenes) {
-    GalleryResult result = render_scene(scene, options, devices);
-    compare::Comparison& comparison = result.comparison;
-    const auto write = [&](const std::string& name, const pathtracer::Image& image) {
-      pathtracer::write_image(pictures.path() / name, reduced(image, largest_picture), {});
-    };
-    write(scene.name + ".png", comparison.a.image);
-    write(scene.name + "_difference.png", compare::heat_map(comparison.a.image, comparison.b.image));
-    comparison.a.image = comparison.b.image = {};
-    print("{:<34}{:9.4f} % bit-equal  {}\n", scene.name, 100 * comparison.metrics.bit_equal,
-          compare::name(comparison.verdict));
-    for (const std::string& reason : comparison.verdict.reasons) print("{:<34}{}\n", "", reason);
-    std::fflush(stdout);
-    results.push_back(std::move(result));
+    try {
+      if (interrupted()) throw Cancelled();
+      gallery.results.push_back(render_scene(scene, options, devices));
+    } catch (const Cancelled& cancelled) {
+      if (gallery.results.empty()) throw;
+      throw Cancelled(write_finished("interrupted", ""));
+    } catch (const std::bad_alloc&) {
+      throw Error(write_finished("ended", "not enough memory for this scene and image size"));
+    } catch (const std::exception& error) {
+      throw Error(write_finished("ended", error.what()));
+    }
+    print_line(gallery.results.back());
   }
-  write_text(folder.path() / "gallery.md", gallery_markdown(results, pictures_folder));
-  write_text(folder.path() / "gallery.json", json_text(to_json(results)));
-  return exit_code_of(outcome_of(results));
+  const std::vector<OutputFile> files = output_files(gallery, folder.path());
+  write_or_rescue(files);
+  print_written(std::span(files).last(3));  // the pages
+  return exit_code_of(outcome_of(gallery.results));
 }
 
 }  // namespace
@@ -96,23 +144,22 @@ void add_gallery_command(CLI::App& app, Action& action) {
       app.add_subcommand("gallery", "Compare two devices on a list of scenes, in one page with images and verdicts");
   const auto options = std::make_shared<Options>();
   command->add_option("LIST", options->list, "The list of scenes")->type_name("FILE.json")->capture_default_str();
-  command->add_option("--out", options->folder, "Folder for gallery.md, gallery.json and images/gallery/*.png")
+  command
+      ->add_option("--out", options->folder, "Folder for index.html, gallery.md, gallery.json and images/gallery/*.png")
       ->type_name("DIR")
       ->capture_default_str();
-  command->add_option("--device", options->devices, "The two devices; the first is the reference")
-      ->expected(2)
-      ->type_name("A B")
-      ->capture_default_str();
+  add_device_pair(*command, options->a, options->b);
   command->add_option("--only", options->only, "Render only these scenes")->type_name("NAME");
   add_size(*command, "--size", options->size, "Width and height in pixels [the scene file's, or else 512x512]");
   add_whole_number(*command, "--spp", options->samples, 1, 1U << 24, "Samples per pixel [those of the list]");
   add_whole_number(*command, "--threads", options->threads, 0, 1024,
                    "Worker threads of the CPU devices; 0: one per hardware thread");
   command->footer(
-      "Exit code: 0 every scene agrees, 1 one differs beyond its thresholds, 2 error.\n"
+      "Exit code: 0 every scene agrees, 1 one differs beyond its thresholds, 2 error, 130 interrupted: the pages show "
+      "what\nwas finished.\n"
       "Examples:\n"
       "  tandem gallery --out docs/results\n"
-      "  tandem gallery --device cpu vulkan:1 --size 256x256 --only veach_mis --out gallery");
+      "  tandem gallery --device cpu,vulkan:1 --size 256x256 --only veach_mis --out gallery");
   command->callback([&action, options] { action = [options] { return render_gallery(*options); }; });
 }
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "compare/session/rendering.hpp"
 #include "tools/command.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/options/threshold_options.hpp"
 #include "tools/output/messages.hpp"
@@ -55,6 +56,7 @@ int compare_matrix(const Options& options) {
     const OutputFile file{options.json,
                           [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }};
     write_or_rescue({&file, 1});
+    print_written({&file, 1});
   }
   return report.agree() ? exit_code::success : exit_code::differ;
 }
@@ -66,9 +68,7 @@ void add_matrix_command(CLI::App& app, Action& action) {
       app.add_subcommand("matrix", "Compare three or more devices in pairs, and by majority vote on each pixel");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  command->add_option("--device", options->devices, "Three or more devices, given after the scene")
-      ->required()
-      ->type_name("A B C...");
+  add_devices(*command, options->devices, "Three or more devices")->required();
   command->add_option("--json", options->json, "Write all numbers as JSON")->type_name("FILE");
   add_threshold_options(*command, options->thresholds);
   command->footer(
@@ -77,7 +77,7 @@ void add_matrix_command(CLI::App& app, Action& action) {
       "and it does not agree with them.\n"
       "Exit code: 0 every pair agrees, 1 a pair differs, 2 error.\n"
       "Example:\n"
-      "  tandem matrix scenes/cornell_box.obj --size 64x64 --device cpu cpu-exact vulkan");
+      "  tandem matrix scenes/cornell_box.obj --size 64x64 --device cpu,cpu-exact,vulkan");
   command->callback([&action, options] { action = [options] { return compare_matrix(*options); }; });
 }
 

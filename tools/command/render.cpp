@@ -12,6 +12,7 @@
 #include "pathtracer/image/image_io.hpp"
 #include "pathtracer/render/first_hits.hpp"
 #include "tools/command.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/options/render_options.hpp"
 #include "tools/output/messages.hpp"
@@ -95,9 +96,8 @@ void add_render_command(CLI::App& app, Action& action) {
   command->add_flag("--aovs,--layers", options->layers,
                     "Add first-hit AOVs to the .exr: albedo, normal, depth, coverage, primitive and material ids");
   add_tone_options(*command, options->tone);
-  command->add_option("--device", options->device, "Device to render on, as listed by 'tandem devices'")
-      ->type_name("D")
-      ->capture_default_str();
+  add_device(*command, options->device, "Device to render on, as listed by 'tandem devices'",
+             "'tandem diff' compares two");
   command->footer(
       "Examples:\n"
       "  tandem render scenes/cornell_box.obj -o box.png\n"

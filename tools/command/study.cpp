@@ -10,6 +10,7 @@
 #include "compare/study/sampling_study.hpp"
 #include "compare/study/study_scenes.hpp"
 #include "tools/command.hpp"
+#include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/interruption.hpp"
@@ -57,6 +58,7 @@ int study_sampling(const Options& options) {
   if (!options.markdown.empty())
     files.push_back({options.markdown, [&](const std::filesystem::path& path) { write_text(path, markdown(report)); }});
   write_or_rescue(files);
+  print_written(files);
   return exit_code::success;
 }
 
@@ -68,9 +70,8 @@ void add_study_command(CLI::App& app, Action& action) {
   CLI::App* const command = group->add_subcommand(
       "sampling", "Error, variance, time and order of convergence of every sampler and integrator option");
   const auto options = std::make_shared<Options>();
-  command->add_option("--device", options->device, "Device to render on, as listed by 'tandem devices'")
-      ->type_name("D")
-      ->capture_default_str();
+  add_device(*command, options->device, "Device to render on, as listed by 'tandem devices'",
+             "run the study once for each");
   add_whole_number(*command, "--threads", options->threads, 0, 4096,
                    "Worker threads of the CPU devices; 0: one per hardware thread");
   add_whole_number(*command, "--size", options->settings.size, 1, 4096,

@@ -10,6 +10,7 @@
 #include "base/progress.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_values.hpp"
+#include "tools/options/shipped_file.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/junit.hpp"
 #include "tools/output/output_file.hpp"
@@ -23,7 +24,7 @@ namespace tandem::tools {
 namespace {
 
 struct Options {
-  std::filesystem::path file = "scenes/suite.json";
+  std::filesystem::path file = shipped_scene("suite.json");
   std::filesystem::path folder = "suite";
   std::filesystem::path json;   ///< empty: that of the folder only
   std::filesystem::path junit;  ///< empty: none
@@ -75,6 +76,7 @@ int run_suite(const Options& options) {
         results.size(), totals.at("agree").get<int>(), totals.at("explained").get<int>(),
         totals.at("differ").get<int>(), totals.at("failed").get<int>(), reused);
   write_or_rescue(files);
+  print_written(files);
   return exit_code_of(outcome_of(results));
 }
 

@@ -1,7 +1,9 @@
 #include "tools/output/output_file.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <set>
@@ -10,6 +12,7 @@
 #include "base/atomic_file.hpp"
 #include "base/error.hpp"
 #include "tools/output/interruption.hpp"
+#include "tools/output/print.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -89,6 +92,26 @@ void write_or_rescue(std::span<const OutputFile> files) {
   if (!first_loss.empty()) throw Error(fmt::format("{}; saving it elsewhere failed too: {}", first_reason, first_loss));
   if (!first_reason.empty()) {
     throw Error(fmt::format("{}; what could not be written there was saved in '{}'", first_reason, rescue.string()));
+  }
+}
+
+void print_written(std::span<const OutputFile> files) {
+  constexpr std::size_t most_names = 12;
+  std::vector<std::filesystem::path> folders;
+  for (const OutputFile& file : files)
+    if (std::ranges::count(folders, file.path.parent_path()) == 0) folders.push_back(file.path.parent_path());
+  for (const std::filesystem::path& folder : folders) {
+    std::vector<std::string> names;
+    for (const OutputFile& file : files)
+      if (file.path.parent_path() == folder) names.push_back(file.path.filename().string());
+    if (names.size() == 1) {
+      tools::print("{:<18}{}\n", "wrote", (folder / names.front()).string());
+      continue;
+    }
+    const std::size_t more = names.size() - std::min(names.size(), most_names);
+    names.resize(names.size() - more);
+    tools::print("{:<18}{}: {}{}\n", "wrote", folder.empty() ? "." : folder.string(), fmt::join(names, ", "),
+                 more == 0 ? "" : fmt::format(" and {} more", more));
   }
 }
 

@@ -48,4 +48,7 @@ void check_output_files(std::span<const OutputFile> files);
 /// why and where it is now.
 void write_or_rescue(std::span<const OutputFile> files);
 
+/// Says on standard output which files were written, a line for each folder, in the two columns of the tables.
+void print_written(std::span<const OutputFile> files);
+
 }  // namespace tandem::tools

@@ -19,6 +19,10 @@ nlohmann::ordered_json side_json(const BaselineSide& side) {
           {"ms_now", side.milliseconds_now}};
 }
 
+bool images_changed(const Baseline& baseline) {
+  return baseline.a.metrics.bit_equal < 1 || baseline.b.metrics.bit_equal < 1;
+}
+
 }  // namespace
 
 std::string table(const Baseline& baseline) {
@@ -35,7 +39,8 @@ std::string table(const Baseline& baseline) {
   };
   add_side("a since then", baseline.a);
   add_side("b since then", baseline.b);
-  if (baseline.changes.empty()) line("changed", "nothing");
+  if (baseline.changes.empty())
+    line("changed", images_changed(baseline) ? "the images, with the same devices, drivers and version" : "nothing");
   for (const BaselineChange& change : baseline.changes)
     line("changed", fmt::format("{}: {}, was {}", change.what, change.now, change.before));
   return text;

@@ -18,8 +18,8 @@ struct GalleryScene {
   std::uint32_t samples = 16;  ///< per pixel
 };
 
-/// Reads the list: {"scenes": [{"file", "title", "samples"}, ...]}, where the last may be absent. Throws
-/// Error, naming the place.
+/// Reads the list: {"scenes": [{"file", "title", "spp"}, ...]}, where the last may be absent and may be called
+/// "samples". Throws Error, naming the place.
 std::vector<GalleryScene> read_gallery(const std::filesystem::path& path);
 
 /// What scenes must keep whose own thresholds do not say otherwise.
@@ -29,13 +29,30 @@ compare::Thresholds gallery_thresholds();
 struct GalleryResult {
   GalleryScene scene;
   compare::Comparison comparison;
+  pathtracer::Image picture = {};     ///< that of a, small
+  pathtracer::Image difference = {};  ///< where b differs from it, small
 };
 
-/// The page for people: a table with the pictures, which lie in `pictures`, relative to the page.
-std::string gallery_markdown(const std::vector<GalleryResult>& results, const std::string& pictures);
+/// All scenes that were rendered, and of how many.
+struct Gallery {
+  std::vector<GalleryResult> results;
+  std::size_t listed = 0;  ///< more than there are results if the run ended early
+  std::string date;
+  std::string command;  ///< the command line
+};
+
+/// Where the pictures of a scene lie, relative to the pages, with slashes. Of every file name.
+std::filesystem::path picture_path(const GalleryScene& scene);
+std::filesystem::path difference_path(const GalleryScene& scene);
+
+/// The page as Markdown, which code hosts show: a table with the pictures.
+std::string gallery_markdown(const Gallery& gallery);
+
+/// The page for a browser.
+std::string gallery_html(const Gallery& gallery);
 
 /// The same for programs: what `tandem diff` says of each scene.
-nlohmann::ordered_json to_json(const std::vector<GalleryResult>& results);
+nlohmann::ordered_json to_json(const Gallery& gallery);
 
 /// The worst of all.
 compare::Outcome outcome_of(const std::vector<GalleryResult>& results);

@@ -11,6 +11,7 @@
 
 #include "base/json_value.hpp"
 #include "base/printable.hpp"
+#include "tools/options/option_words.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -65,6 +66,7 @@ void set_option(SuiteCell& cell, const Value& place, const std::string& key, con
   add_comparison_options(app, cell.comparison);
   std::string option = "--" + key;
   std::ranges::replace(option, '_', '-');
+  option = current_name(option);
   const CLI::Option* const known = app.get_option_no_throw(option);
   if (known == nullptr || is_about_execution(option) || key.find('-') != std::string::npos)
     place.fail("is not an option of 'tandem diff' that a suite can set");

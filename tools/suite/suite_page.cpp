@@ -28,16 +28,17 @@ body { max-width: none; }
 td.cell { min-width: 20rem; max-width: 26rem; padding: .6rem 1rem .6rem 0; }
 tbody th { padding-top: .6rem; }
 .pictures { display: flex; gap: .4rem; float: left; margin: 0 .8rem .2rem 0; }
-.pictures img { width: 64px; height: 64px; object-fit: contain; background: #000; image-rendering: pixelated; }
+.pictures img { width: 112px; height: 112px; object-fit: contain; background: #000; }
 .agree, .explained { color: var(--good); } .differ, .failed { color: var(--bad); }
 .reasons { clear: both; margin: .2rem 0 0; overflow-wrap: anywhere; }
 )";
 
-std::string image(const std::filesystem::path& path, const std::string& words) {
+/// A picture that the page holds, with a link to its file, which a browser shows as large as it is.
+std::string image(const std::filesystem::path& folder, const std::string& file, const std::string& words) {
   constexpr std::uint64_t most_bytes = 1u << 30;
-  const std::string bytes = read_bytes(path, most_bytes);
-  return fmt::format("<img alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\">", xml_text(words), xml_text(words),
-                     base64(std::as_bytes(std::span(bytes))));
+  const std::string bytes = read_bytes(folder / file, most_bytes);
+  return fmt::format("<a href=\"{0}\"><img alt=\"{1}\" title=\"{1}\" src=\"data:image/png;base64,{2}\"></a>",
+                     xml_text(file), xml_text(words), base64(std::as_bytes(std::span(bytes))));
 }
 
 std::string string(const Json& json, const char* key) { return json.at(key).get<std::string>(); }
@@ -60,6 +61,15 @@ std::string class_counts(const Json& report) {
   return fmt::format("{}", fmt::join(counts, ", "));
 }
 
+/// What the suite sets for the comparison: "size 128x128, spp 16, classify true".
+std::string given_text(const SuiteResult& result) {
+  std::vector<std::string> settings;
+  if (result.json.contains("key"))
+    for (const auto& [name, value] : result.json.at("key").at("given").items())
+      settings.push_back(fmt::format("{} {}", name, value.is_string() ? value.get<std::string>() : value.dump()));
+  return fmt::format("{}", fmt::join(settings, ", "));
+}
+
 std::string cell_html(const SuiteResult& result, const std::filesystem::path& folder) {
   const Json& json = result.json;
   const std::string state = string(json, "state");
@@ -68,8 +78,8 @@ std::string cell_html(const SuiteResult& result, const std::filesystem::path& fo
     fmt::format_to(std::back_inserter(html), format, std::forward<Arguments>(arguments)...);
   };
   if (!result.failed()) {
-    add("<div class=\"pictures\">{}{}</div>", image(folder / string(json, "picture"), "a: " + string(json, "a")),
-        image(folder / string(json, "difference"), "difference"));
+    add("<div class=\"pictures\">{}{}</div>", image(folder, string(json, "picture"), "a: " + string(json, "a")),
+        image(folder, string(json, "difference"), "difference"));
   }
   add("<strong class=\"{}\">{}</strong>", state, state);
   if (!result.failed()) {
@@ -81,6 +91,8 @@ std::string cell_html(const SuiteResult& result, const std::filesystem::path& fo
         report.at("ms_a").get<double>(), report.at("ms_b").get<double>(), report.at("compile_ms_a").get<double>(),
         report.at("compile_ms_b").get<double>());
   }
+  const std::string given = given_text(result);
+  if (!given.empty()) add("<br><span class=\"hint\">{}</span>", xml_text(given));
   if (json.contains("page")) add(" <a href=\"{}\">details</a>", xml_text(string(json, "page")));
   if (!json.at("reasons").empty()) {
     html += "<ul class=\"reasons\">";
@@ -102,6 +114,21 @@ std::set<std::string> device_sentences(const std::vector<SuiteResult>& results) 
     }
   }
   return sentences;
+}
+
+/// "2026-11-30 09:12 UTC", or the first and the last date on which the results were computed.
+std::string dates_text(const std::vector<SuiteResult>& results) {
+  std::set<std::string> dates;
+  for (const SuiteResult& result : results) dates.insert(result.json.value("date", std::string("unknown date")));
+  if (dates.empty()) return {};
+  return dates.size() == 1 ? *dates.begin() : fmt::format("{} to {}", *dates.begin(), *dates.rbegin());
+}
+
+/// A count in the color of its state, unless there are none.
+std::string count_text(const Json& totals, const char* state, std::string_view words) {
+  const int count = totals.at(state).get<int>();
+  const std::string text = fmt::format("{} {}", count, words);
+  return count == 0 ? text : fmt::format("<span class=\"{}\">{}</span>", state, text);
 }
 
 }  // namespace
@@ -132,13 +159,12 @@ std::string suite_page(const std::string& title, const std::vector<SuiteResult>&
   add("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width\">\n<title>{0}</title>\n<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
       xml_text(title), compare::page_style(), suite_style);
-  add("<p>{} comparisons: <span class=\"agree\">{} agree</span>, <span class=\"explained\">{} are explained</span>, "
-      "<span class=\"differ\">{} differ</span>, <span class=\"failed\">{} failed</span>. The worst scenes come first; "
-      "times are those of a and of b.</p>\n",
-      results.size(), totals.at("agree").get<int>(), totals.at("explained").get<int>(), totals.at("differ").get<int>(),
-      totals.at("failed").get<int>());
+  add("<p>{} comparisons: {}, {}, {}, {}. The worst scenes come first; times are those of a and of b.</p>\n",
+      results.size(), count_text(totals, "agree", "agree"), count_text(totals, "explained", "are explained"),
+      count_text(totals, "differ", "differ"), count_text(totals, "failed", "failed"));
   for (const std::string& sentence : device_sentences(results)) add("<p class=\"hint\">{}</p>\n", xml_text(sentence));
-  add("<p class=\"hint\">tandem {}</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>scene</th>", TANDEM_VERSION);
+  add("<p class=\"hint\">Compared {}, tandem {}</p>\n<div class=\"scroll\"><table>\n<thead><tr><th>scene</th>",
+      dates_text(results), TANDEM_VERSION);
   for (const auto& [a, b, settings] : columns)
     add("<th>{} against {}<br><span class=\"hint\">{}</span></th>", xml_text(a), xml_text(b), xml_text(settings));
   html += "</tr></thead>\n<tbody>\n";

@@ -17,6 +17,7 @@
 #include "tools/output/interruption.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/progress_bar.hpp"
+#include "tools/output/run_record.hpp"
 #include "tools/report/comparison_report.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/job_report.hpp"
@@ -29,7 +30,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint32_t largest_picture = 128;
+constexpr std::uint32_t largest_picture = 256;
 
 /// The result in the file of the folder, if it is there, whole, and one of this key.
 std::optional<Json> read_result(const std::filesystem::path& folder, const std::filesystem::path& path,
@@ -102,7 +103,8 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, compare::Comparison& compar
       return {.json = std::move(*earlier), .reused = true};
   compare::Session session = prepare(std::move(devices), std::move(job), options);
   comparison = compare_devices(session, progress_bars());
-  const Json report = to_json(comparison);
+  Json report = to_json(comparison);
+  report["date"] = date_text();
   if (cell.report) page = report_page(session, comparison, json_text(report));
   const std::vector<std::string>& reasons = comparison.verdict.reasons;
   SuiteResult result{.json = {{"state", compare::name(comparison.verdict)},
@@ -139,9 +141,13 @@ SuiteResult SuiteRun::run(const SuiteCell& cell) {
   }
   if (result.reused) return result;
 
-  Json json = {{"name", cell.name},         {"scene", cell.scene},
-               {"a", cell.comparison.a},    {"b", cell.comparison.b},
-               {"settings", cell.settings}, {"seconds", std::chrono::duration<double>(Clock::now() - started).count()}};
+  Json json = {{"name", cell.name},
+               {"scene", cell.scene},
+               {"a", cell.comparison.a},
+               {"b", cell.comparison.b},
+               {"settings", cell.settings},
+               {"date", date_text()},
+               {"seconds", std::chrono::duration<double>(Clock::now() - started).count()}};
   json.update(result.json);
   result.json = std::move(json);
   if (!result.failed()) {

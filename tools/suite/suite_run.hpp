@@ -16,8 +16,9 @@ namespace tandem::tools {
 
 /// What came of a cell. `json` is its file, and all that a page or a report needs:
 /// name, scene, a, b, settings (name), state (agree, explained, differ, failed), reasons (or why there is no verdict),
-/// seconds (of the whole cell), report (of `tandem diff`; null when it failed), picture and difference (files, relative
-/// to the folder; likewise), page (its own, where it was asked for), key (of all that the result depends on).
+/// date (when it was compared), seconds (of the whole cell), report (of `tandem diff`; null when it failed), picture
+/// and difference (files, relative to the folder; likewise), page (its own, where it was asked for), key (of all that
+/// the result depends on).
 struct SuiteResult {
   nlohmann::ordered_json json;
   bool reused = false;  ///< from an earlier run

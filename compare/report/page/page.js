@@ -5,6 +5,7 @@ function showHead(numbers, data, pixels, names) {
   byId("title").textContent = settings.scene;
   byId("subtitle").textContent = `${names.a} (a) against ${names.b} (b) · ${settings.width} × ${settings.height} pixels, ` +
     `${countText(settings.spp, "sample")} each, up to ${settings.depth} segments · tandem ${numbers.version}`;
+  if (numbers.date) byId("run").append(`Run ${numbers.date}`, ...(numbers.command ? [": ", element("code", {}, numbers.command)] : []));
   byId("made").textContent = "This page is one file: it loads nothing and sends nothing.";
   const card = byId("verdict");
   card.classList.add(numbers.verdict);

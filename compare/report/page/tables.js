@@ -184,7 +184,7 @@ function addRegions(numbers, goToRegion) {
 }
 
 /** What has its own table above, or stands at the top of the page. */
-const shownElsewhere = new Set(["verdict", "tier", "reasons", "pixels", "thresholds", "metrics", "settings", "version", "device_a", "device_b",
+const shownElsewhere = new Set(["verdict", "tier", "reasons", "pixels", "thresholds", "metrics", "settings", "version", "date", "command", "format", "device_a", "device_b",
   ...metricRows.map(([key]) => key), ...["ms", "build_ms", "compile_ms", "rays", "mrays", "trace"].flatMap((name) => [`${name}_a`, `${name}_b`])]);
 
 function showNumbers(numbers, goToRegion) {

@@ -13,9 +13,15 @@ constexpr std::uint32_t most_depth = 1024;
 
 std::vector<std::string> keys_of(CameraKind kind) {
   std::vector<std::string> keys = {"type", "position", "target", "up", "motion"};
-  if (kind == CameraKind::perspective) keys.insert(keys.end(), {"vertical_fov", "lens_radius", "focus_distance"});
-  if (kind == CameraKind::orthographic) keys.emplace_back("height");
+  if (kind == CameraKind::perspective) keys.insert(keys.end(), {"fov", "lens_radius", "focus_distance"});
+  if (kind == CameraKind::orthographic) keys.emplace_back("view_height");
   return keys;
+}
+
+std::vector<Object::OldName> old_names_of(CameraKind kind) {
+  if (kind == CameraKind::perspective) return {{"vertical_fov", "fov"}};
+  if (kind == CameraKind::orthographic) return {{"height", "view_height"}};
+  return {};
 }
 
 template <typename T>
@@ -29,7 +35,7 @@ void read_choice(const Object& object, const std::string& key, std::optional<T>&
 Camera read_camera(const Value& value, const glm::dvec3& origin) {
   Camera camera;
   camera.kind = type_of<CameraKind>(value, camera_names(), "type", CameraKind::perspective);
-  const Object object(value, keys_of(camera.kind));
+  const Object object(value, keys_of(camera.kind), old_names_of(camera.kind));
   const glm::dvec3 position = object.require("position").double_vector(any_length);
   const glm::dvec3 target = object.require("target").double_vector(any_length);
   camera.position = glm::vec3(position - origin);
@@ -37,11 +43,12 @@ Camera read_camera(const Value& value, const glm::dvec3& origin) {
   object.read("up", camera.up, &Value::direction, any_length);
   object.read("motion", camera.motion, &Value::vector, any_length);
   if (camera.kind == CameraKind::perspective) {
-    object.read("vertical_fov", camera.vertical_fov, &Value::number, field_of_view);
+    object.read("fov", camera.vertical_fov, &Value::number, field_of_view);
     object.read("lens_radius", camera.lens_radius, &Value::number, length_range);
     object.read("focus_distance", camera.focus_distance, &Value::number, length_range);
   }
-  if (camera.kind == CameraKind::orthographic) object.read("height", camera.height, &Value::number, positive_length);
+  if (camera.kind == CameraKind::orthographic)
+    object.read("view_height", camera.height, &Value::number, positive_length);
   try {
     // Where floats are coarse the two may coincide until the scene has its origin.
     Camera centred = camera;
@@ -57,19 +64,20 @@ Camera read_camera(const Value& value, const glm::dvec3& origin) {
 
 SceneSettings read_settings(const Value& value) {
   const Object object(value,
-                      {"width", "height", "samples", "max_depth", "seed", "background", "integrator", "sampler",
-                       "light_sampling", "mis", "bsdf_sampling", "roulette", "max_diffuse_depth", "max_glossy_depth",
-                       "max_specular_depth", "clamp_direct", "clamp_indirect", "occlusion_length"});
+                      {"width", "height", "spp", "depth", "seed", "background", "integrator", "sampler", "nee", "mis",
+                       "bsdf_sampling", "roulette", "max_diffuse_depth", "max_glossy_depth", "max_specular_depth",
+                       "clamp_direct", "clamp_indirect", "occlusion_length"},
+                      {{"samples", "spp"}, {"max_depth", "depth"}, {"light_sampling", "nee"}});
   SceneSettings settings;
   object.read("width", settings.width, &Value::whole_number, 1u, largest_side);
   object.read("height", settings.height, &Value::whole_number, 1u, largest_side);
-  object.read("samples", settings.samples, &Value::whole_number, 1u, most_samples);
-  object.read("max_depth", settings.max_depth, &Value::whole_number, 1u, most_depth);
+  object.read("spp", settings.samples, &Value::whole_number, 1u, most_samples);
+  object.read("depth", settings.max_depth, &Value::whole_number, 1u, most_depth);
   object.read("seed", settings.seed, &Value::whole_number, 0u, std::numeric_limits<std::uint32_t>::max());
   object.read("background", settings.background, &Value::color, radiance_range);
   read_choice(object, "integrator", settings.integrator, integrator_names());
   read_choice(object, "sampler", settings.sampler, sampler_names());
-  object.read("light_sampling", settings.light_sampling, &Value::boolean);
+  object.read("nee", settings.light_sampling, &Value::boolean);
   read_choice(object, "mis", settings.mis, mis_names());
   read_choice(object, "bsdf_sampling", settings.bsdf_sampling, bsdf_sampling_names());
   object.read("roulette", settings.roulette, &Value::boolean);

@@ -1,6 +1,9 @@
 #include "rhi_cpu/cache/kernel_cache.hpp"
 
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -11,10 +14,14 @@
 #include "rhi_cpu/cache/kernel_seal.hpp"
 #include "tests/support/environment_variable.hpp"
 #include "tests/support/messages.hpp"
+#include "tests/support/run_summary.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 namespace tandem::cpu {
 namespace {
+
+/// Nobody's, on every system.
+constexpr uid_t other_user = 65534;
 
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
@@ -59,6 +66,12 @@ fs::path put_old_file(const fs::path& folder, const std::string& name, std::size
   return path;
 }
 
+FileDescriptor opened(const fs::path& path) { return FileDescriptor(::open(path.c_str(), O_RDWR | O_CLOEXEC)); }
+
+bool seal(const fs::path& path, const ContentHash& key) { return seal_kernel_file(opened(path).get(), key); }
+
+bool is_sound(const fs::path& path, const ContentHash& key) { return kernel_file_is_sound(opened(path).get(), key); }
+
 std::size_t file_count(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
@@ -69,10 +82,10 @@ TEST_CASE("The seal tells a whole file from any other") {
   const ScratchFolder folder;
   const fs::path path = folder.path() / "file";
   std::ofstream(path, std::ios::binary) << std::string(1000, 'k');
-  CHECK_FALSE(kernel_file_is_sound(path, key_of(1)));
-  REQUIRE(seal_kernel_file(path, key_of(1)));
-  CHECK(kernel_file_is_sound(path, key_of(1)));
-  CHECK_FALSE(kernel_file_is_sound(path, key_of(2)));
+  CHECK_FALSE(is_sound(path, key_of(1)));
+  REQUIRE(seal(path, key_of(1)));
+  CHECK(is_sound(path, key_of(1)));
+  CHECK_FALSE(is_sound(path, key_of(2)));
 
   SUBCASE("truncated") { fs::resize_file(path, 999); }
   SUBCASE("truncated within the seal") { fs::resize_file(path, fs::file_size(path) - 1); }
@@ -84,7 +97,7 @@ TEST_CASE("The seal tells a whole file from any other") {
   }
   SUBCASE("a byte more") { std::ofstream(path, std::ios::binary | std::ios::app) << 'k'; }
   SUBCASE("gone") { fs::remove(path); }
-  CHECK_FALSE(kernel_file_is_sound(path, key_of(1)));
+  CHECK_FALSE(is_sound(path, key_of(1)));
 }
 
 TEST_CASE("What is added is found, also by another cache object; what is not added is not") {
@@ -138,25 +151,76 @@ TEST_CASE("A damaged file is removed and counts as not there") {
   }
   SUBCASE("sealed, but no library") {
     std::ofstream(path, std::ios::binary | std::ios::trunc) << "no library";
-    REQUIRE(seal_kernel_file(path, key));
+    REQUIRE(seal(path, key));
   }
   SUBCASE("a library, but no kernel") {
     const ScratchFolder work;
     fs::copy_file(compile(work.path(), "int nothing;"), path, fs::copy_options::overwrite_existing);
-    REQUIRE(seal_kernel_file(path, key));
+    REQUIRE(seal(path, key));
   }
   SUBCASE("a kernel of another version") {
     const ScratchFolder work;
     fs::copy_file(compile(work.path(), source_of(1, kernel::abi_version + 1)), path,
                   fs::copy_options::overwrite_existing);
-    REQUIRE(seal_kernel_file(path, key));
+    REQUIRE(seal(path, key));
+  }
+  SUBCASE("writable by the group") { REQUIRE(::chmod(path.c_str(), 0775) == 0); }
+  SUBCASE("a link to a sound file") {
+    fs::rename(path, folder.path() / "elsewhere");
+    fs::create_symlink("elsewhere", path);
+  }
+  SUBCASE("a link to nothing") {
+    fs::remove(path);
+    fs::create_symlink("nothing", path);
+  }
+  SUBCASE("a folder with something in it") {
+    fs::remove(path);
+    fs::create_directories(path / "below");
+  }
+  SUBCASE("a pipe that nobody writes to") {
+    fs::remove(path);
+    REQUIRE(::mkfifo(path.c_str(), 0700) == 0);
   }
   CHECK(cache.find(key, "glow") == nullptr);
-  CHECK_FALSE(fs::exists(path));
+  CHECK_FALSE(fs::exists(fs::symlink_status(path)));
   CHECK(cache.statistics().damaged == 1);
   CHECK(messages.count(rhi::Severity::info, "glow") == 1);
   CHECK(add(cache, key, 33)->info().push_constant_size == 33);
   CHECK(cache.find(key, "glow") != nullptr);
+}
+
+TEST_CASE("A sound file of another user is not run") {
+  if (::geteuid() != 0) TANDEM_SKIP("only root can give files away");
+  const ScratchFolder folder;
+  Messages messages;
+  KernelCache cache(folder.path(), messages.callback());
+  add(cache, key_of(1), 11);
+  REQUIRE(::chown(file_of(cache, key_of(1)).c_str(), other_user, other_user) == 0);
+  CHECK(cache.find(key_of(1), "glow") == nullptr);
+  CHECK_FALSE(fs::exists(file_of(cache, key_of(1))));
+  CHECK(messages.count(rhi::Severity::info, "it belongs to another user") == 1);
+}
+
+TEST_CASE("The library that is loaded is the one that was checked, whatever has its name by now") {
+  const ScratchFolder folder;
+  const fs::path first = folder.path() / "first";
+  const fs::path second = folder.path() / "second";
+  fs::create_directories(first);
+  fs::create_directories(second);
+  const fs::path one = compile(first, source_of(11));
+  const fs::path other = compile(second, source_of(22));
+  std::vector<KernelLibraryHandle> loaded;
+  for (int i = 0; i < 3; ++i) {
+    // The same number of a descriptor each time: the loader must not take its path for a library that it knows.
+    const FileDescriptor file = opened(i == 1 ? other : one);
+    fs::rename(i == 1 ? other : one, folder.path() / "renamed");
+    fs::copy_file(i == 1 ? one : other, i == 1 ? other : one);
+    auto result = load_kernel_library(file.get());
+    REQUIRE(std::holds_alternative<KernelLibraryHandle>(result));
+    loaded.push_back(std::get<KernelLibraryHandle>(result));
+    CHECK(loaded.back()->info().push_constant_size == (i == 1 ? 22 : 11));
+    fs::rename(folder.path() / "renamed", i == 1 ? other : one);
+  }
 }
 
 TEST_CASE("The files that were not used for longest go when the bound is passed") {
@@ -227,6 +291,15 @@ TEST_CASE("A folder that cannot be used is replaced by a temporary one, with a w
   SUBCASE("open to everybody") {
     fs::create_directory(wanted);
     fs::permissions(wanted, fs::perms::all);
+  }
+  SUBCASE("open to its group") {
+    fs::create_directory(wanted);
+    fs::permissions(wanted, fs::perms::owner_all | fs::perms::group_all);
+  }
+  SUBCASE("below a folder that is open to everybody") {
+    fs::create_directory(wanted);
+    fs::permissions(wanted, fs::perms::all);
+    wanted /= "below";
   }
   fs::path temporary;
   {

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "base/error.hpp"
@@ -74,8 +75,29 @@ TEST_CASE("What is wrong with a description is said in one sentence that names t
           "{" + ball +
           R"(, "lights": [{"type": "spot", "position": [0, 3, 0], "direction": [0, -1, 0], "intensity": 1, "inner_angle": 50}]})") ==
       "lights[0] must have an inner_angle below its outer_angle");
-  CHECK(error_of("{" + ball + R"(, "settings": {"max_depth": 1.5}})") ==
-        "settings.max_depth must be a whole number from 1 to 1024");
+  CHECK(error_of("{" + ball + R"(, "settings": {"depth": 1.5}})") ==
+        "settings.depth must be a whole number from 1 to 1024");
+}
+
+TEST_CASE("Members are called as on the command line; the names that they had before are taken too, but not both") {
+  const test::ScratchFolder folder;
+  const std::string view = R"("position": [0, 0, 5], "target": [0, 0, 0])";
+  const auto with = [&](const std::string& camera, const std::string& settings) {
+    return "{" + ball + R"(, "camera": {)" + view + camera + R"(}, "settings": {)" + settings + "}}";
+  };
+  const Scene now = load(folder, with(R"(, "fov": 30)", R"("spp": 3, "depth": 4, "nee": false)"));
+  const Scene before =
+      load(folder, with(R"(, "vertical_fov": 30)", R"("samples": 3, "max_depth": 4, "light_sampling": false)"));
+  for (const Scene* scene : {&now, &before}) {
+    CHECK(scene->camera->vertical_fov == 30.0f);
+    CHECK(scene->settings.samples == 3);
+    CHECK(scene->settings.max_depth == 4);
+    CHECK(scene->settings.light_sampling == false);
+  }
+  for (const char* name : {"view_height", "height"})
+    CHECK(load(folder, with(fmt::format(R"(, "type": "orthographic", "{}": 7)", name), "")).camera->height == 7.0f);
+  CHECK(error_of(with("", R"("spp": 3, "samples": 3)")) ==
+        "settings.samples is the old name of spp, which is there too");
 }
 
 TEST_CASE("A box has twelve triangles that look outwards, also where its transform mirrors") {

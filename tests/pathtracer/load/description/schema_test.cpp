@@ -71,7 +71,7 @@ std::vector<Json> documents() {
     document["materials"]["plain"] = {{"model", "diffuse"}};
     document["quads"] = {{{"corner", {1, 2, 3}}, {"u", {4, 5, 6}}, {"v", {7, -8, 9}}, {"material", "plain"}}};
     document["camera"]["type"] = type;
-    if (document["camera"]["type"] == "orthographic") document["camera"]["height"] = 2.5;
+    if (document["camera"]["type"] == "orthographic") document["camera"]["view_height"] = 2.5;
     result.push_back(document);
   }
   return result;
