@@ -110,12 +110,14 @@ std::variant<PrivateFolder, std::string> PrivateFolder::open(const fs::path& fol
 
 PrivateFile PrivateFolder::open_file(std::string_view name) const {
   PrivateFile file;
-  FileDescriptor descriptor(
-      ::openat(descriptor_.get(), std::string(name).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
+  FileDescriptor descriptor(::openat(descriptor_.get(), std::string(name).c_str(),
+                                     O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
   struct stat status {};
   if (!descriptor) {
-    if (errno == ELOOP) file.problem = "is a symbolic link";
-    else if (errno != ENOENT) file.problem = cannot_be_opened(errno);
+    if (errno == ELOOP)
+      file.problem = "is a symbolic link";
+    else if (errno != ENOENT)
+      file.problem = cannot_be_opened(errno);
   } else if (::fstat(descriptor.get(), &status) != 0) {
     file.problem = cannot_be_opened(errno);
   } else if (!S_ISREG(status.st_mode)) {

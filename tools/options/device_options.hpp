@@ -8,7 +8,8 @@
 /// option repeated.
 namespace tandem::tools {
 
-/// One device. It must outlive the parsing, as those of the other functions. @param otherwise ends the sentence that refuses more: "'tandem diff' compares two"
+/// One device. It must outlive the parsing, as those of the other functions. @param otherwise ends the sentence that
+/// refuses more: "'tandem diff' compares two"
 void add_device(CLI::App& command, std::string& device, const std::string& description, const std::string& otherwise);
 
 /// As many devices as are given.

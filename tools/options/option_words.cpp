@@ -9,10 +9,8 @@ namespace tandem::tools {
 namespace {
 
 constexpr std::string_view device_option = "--device";
-constexpr std::pair<std::string_view, std::string_view> old_names[] = {{"--samples", "--spp"},
-                                                                       {"--max-depth", "--depth"},
-                                                                       {"--light-sampling", "--nee"},
-                                                                       {"--vertical-fov", "--fov"}};
+constexpr std::pair<std::string_view, std::string_view> old_names[] = {
+    {"--samples", "--spp"}, {"--max-depth", "--depth"}, {"--light-sampling", "--nee"}, {"--vertical-fov", "--fov"}};
 
 }  // namespace
 

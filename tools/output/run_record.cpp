@@ -19,7 +19,8 @@ namespace {
 std::string quoted(std::string_view word) {
   constexpr std::string_view harmless = "-_./,:=+@%";
   const auto is_harmless = [&](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || harmless.find(c) != std::string_view::npos;
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           harmless.find(c) != std::string_view::npos;
   };
   if (!word.empty() && std::ranges::all_of(word, is_harmless)) return std::string(word);
   std::string text = "'";

@@ -95,8 +95,10 @@ std::string url(const std::filesystem::path& path) {
   std::string text;
   for (const char c : path.generic_string()) {
     const bool is_alphanumeric = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (is_alphanumeric || std::string_view("-._~/").find(c) != std::string_view::npos) text += c;
-    else text += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    if (is_alphanumeric || std::string_view("-._~/").find(c) != std::string_view::npos)
+      text += c;
+    else
+      text += fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return text;
 }
@@ -111,8 +113,10 @@ void add_line(std::string& text, fmt::format_string<Arguments...> format, Argume
 
 std::string gallery_markdown(const Gallery& gallery) {
   std::string text = "# Gallery\n\n";
-  add_line(text, "Written by `tandem gallery` on {} (version {}). Each scene is rendered on two devices, from the same "
-           "shader,\nseed and scene:\n", gallery.date, TANDEM_VERSION);
+  add_line(text,
+           "Written by `tandem gallery` on {} (version {}). Each scene is rendered on two devices, from the same "
+           "shader,\nseed and scene:\n",
+           gallery.date, TANDEM_VERSION);
   if (!gallery.results.empty()) {
     const compare::Comparison& first = gallery.results.front().comparison;
     add_line(text, "| | device | hardware | driver |\n|---|---|---|---|");
@@ -122,7 +126,8 @@ std::string gallery_markdown(const Gallery& gallery) {
   }
   add_line(text, "\nThe picture is that of a; beside it, bright where b differs from it, the relative difference.\n");
   if (gallery.results.size() < gallery.listed) add_line(text, "{}\n", unfinished_text(gallery));
-  add_line(text, "| scene | a | difference | settings | bit-equal pixels | means differ by | seconds a, b | "
+  add_line(text,
+           "| scene | a | difference | settings | bit-equal pixels | means differ by | seconds a, b | "
            "compiling a, b | verdict |");
   add_line(text, "|---|---|---|---|---|---|---|---|---|");
   for (const GalleryResult& result : gallery.results) {
@@ -131,28 +136,36 @@ std::string gallery_markdown(const Gallery& gallery) {
     const std::string title = markdown_text(row.scene.title);
     std::string judgement = compare::name(verdict);
     if (!verdict.reasons.empty())
-      judgement = fmt::format("**{}**: {}", judgement, markdown_text(fmt::format("{}", fmt::join(verdict.reasons, "; "))));
+      judgement =
+          fmt::format("**{}**: {}", judgement, markdown_text(fmt::format("{}", fmt::join(verdict.reasons, "; "))));
     add_line(text, "| {}<br>{} | ![{}]({}) | ![]({}) | {} | {} | {} | {} | {} | {} |", title,
              markdown_code(row.scene.file.filename().string()), title, url(picture_path(row.scene)),
-             url(difference_path(row.scene)), row.settings, row.bit_equal, row.means, row.seconds, row.compiling, judgement);
+             url(difference_path(row.scene)), row.settings, row.bit_equal, row.means, row.seconds, row.compiling,
+             judgement);
   }
   const std::vector<const GalleryResult*> own = with_own_rule(gallery);
   if (!own.empty()) add_line(text, "\nWhy some scenes may differ at more pixels:\n");
   for (const GalleryResult* result : own)
-    add_line(text, "- {}: {}", markdown_code(result->scene.name), markdown_text(bit_equal_rule(result->comparison).reason));
+    add_line(text, "- {}: {}", markdown_code(result->scene.name),
+             markdown_text(bit_equal_rule(result->comparison).reason));
   return text;
 }
 
 std::string gallery_html(const Gallery& gallery) {
   std::string text;
-  add_line(text, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+  add_line(text,
+           "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
            "content=\"width=device-width\">\n<title>Gallery</title>\n<style>{}{}</style>\n</head>\n<body>\n"
-           "<h1>Gallery</h1>", compare::page_style(), gallery_style);
+           "<h1>Gallery</h1>",
+           compare::page_style(), gallery_style);
   std::size_t count[3] = {};
-  for (const GalleryResult& result : gallery.results) ++count[static_cast<std::size_t>(result.comparison.verdict.outcome)];
+  for (const GalleryResult& result : gallery.results)
+    ++count[static_cast<std::size_t>(result.comparison.verdict.outcome)];
   const auto of = [&](compare::Outcome outcome) { return count[static_cast<std::size_t>(outcome)]; };
-  add_line(text, "<p>{} scenes, each rendered on two devices from the same shader and seed: {} agree, {} are explained, "
-           "{} differ.</p>", gallery.results.size(), of(compare::Outcome::agree), of(compare::Outcome::explained),
+  add_line(text,
+           "<p>{} scenes, each rendered on two devices from the same shader and seed: {} agree, {} are explained, "
+           "{} differ.</p>",
+           gallery.results.size(), of(compare::Outcome::agree), of(compare::Outcome::explained),
            of(compare::Outcome::differ));
   if (gallery.results.size() < gallery.listed) add_line(text, "<p class=\"problem\">{}</p>", unfinished_text(gallery));
   add_line(text, "<p class=\"hint\">{}, tandem {}: <code>{}</code></p>", gallery.date, TANDEM_VERSION,
@@ -160,10 +173,11 @@ std::string gallery_html(const Gallery& gallery) {
   if (!gallery.results.empty()) {
     const compare::Comparison& first = gallery.results.front().comparison;
     for (const auto& [side, device] : {std::pair("a", &first.a.device), std::pair("b", &first.b.device)})
-      add_line(text, "<p class=\"hint\">{}: {}, {}, {}</p>", side, xml_text(device->name), xml_text(device->description),
-               xml_text(device->driver));
+      add_line(text, "<p class=\"hint\">{}: {}, {}, {}</p>", side, xml_text(device->name),
+               xml_text(device->description), xml_text(device->driver));
   }
-  add_line(text, "<div class=\"scroll\"><table>\n<thead><tr><th>scene</th><th>a</th><th>relative difference</th>"
+  add_line(text,
+           "<div class=\"scroll\"><table>\n<thead><tr><th>scene</th><th>a</th><th>relative difference</th>"
            "<th>settings</th><th>bit-equal pixels</th><th>means differ by</th><th>seconds a, b</th>"
            "<th>compiling a, b</th><th>verdict</th></tr></thead>\n<tbody>");
   for (const GalleryResult& result : gallery.results) {

@@ -40,8 +40,7 @@ TEST_CASE("A private folder is made with all above it, for this user alone") {
   const ScratchFolder scratch;
   const auto opened = PrivateFolder::open(scratch.path() / "a" / "b");
   REQUIRE(std::holds_alternative<PrivateFolder>(opened));
-  for (const char* name : {"a", "a/b"})
-    CHECK(fs::status(scratch.path() / name).permissions() == fs::perms::owner_all);
+  for (const char* name : {"a", "a/b"}) CHECK(fs::status(scratch.path() / name).permissions() == fs::perms::owner_all);
 }
 
 TEST_CASE("Only the owner may write a private folder and what is above it") {
