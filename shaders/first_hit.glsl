@@ -46,7 +46,7 @@ void add_first_hit(uvec2 pixel, uint sample_index) {
   if (primitive == NO_PRIMITIVE) return;
   precise Surface surface = surface_at(primitive, ray.origin, ray.direction, time);
   BsdfParameters parameters =
-      bsdf_parameters(surface.material, surface.outside, surface.texture_coordinates, surface.position);
+      bsdf_parameters(surface.material, surface.outside, surface.texture_coordinates, surface.position, surface.tint);
   if (sample_index == 0) first_hits[index].material = surface.material;
   precise vec3 albedo = first_hits[index].albedo + bsdf_albedo(parameters);
   precise float depth = first_hits[index].depth + det_length(surface.position - ray.origin);

@@ -41,10 +41,17 @@ struct Material {
   uint bump_texture;     // heights
   uint medium;           // inside, index into media, or NO_MEDIUM
   float alpha_cutoff;    // 0: opacity is a fraction; else covered where the opacity is at least this, and nowhere else
-  uint reserved_0;
+  uint attributes;       // ATTRIBUTE_*: what of vertex_attributes counts
   uint reserved_1;
   uint reserved_2;
 };
+
+// Bits of Material.attributes, with FEATURE_TEXTURES.
+const uint ATTRIBUTE_COLOR = 1;
+const uint ATTRIBUTE_OPACITY = 2;
+const uint ATTRIBUTE_TANGENT = 4;
+const uint ATTRIBUTE_TEXTURE_COORDINATES = 8;
+const uint ATTRIBUTE_EMISSION = 16;  // with ATTRIBUTE_COLOR: the colour is a factor on the emission too
 
 const uint TEXTURE_IMAGE = 0;
 const uint TEXTURE_CHECKER = 1;  // color_a and color_b in squares of side 1 / scale of (u, v)
@@ -79,7 +86,7 @@ struct Texture {
   vec3 u_row;       // u of the texture is u_row.x * u + u_row.y * v + u_row.z of the vertices' coordinates, v upwards
   float scale;
   vec3 v_row;
-  uint reserved;
+  uint coordinates;  // which of the vertices' texture coordinates: 0, or 1 for those of vertex_attributes
   vec3 color_a;     // image: factor
   float alpha_a;
   vec3 color_b;
@@ -120,6 +127,15 @@ const uint TRIANGLE_SMOOTH = 0x80000000u;  // bit of Triangle.material: the vert
 struct Triangle {
   uvec3 vertices;
   uint material;  // index into materials, with TRIANGLE_SMOOTH
+};
+
+// Of each vertex, beside its position, normal and texture coordinates.
+struct VertexAttributes {
+  vec4 tangent;              // unit, the direction in which s of the normal map grows; w: 1, or -1 where t is mirrored
+  vec3 color;                // factor on the base colour
+  float opacity;             // factor on the opacity
+  vec2 texture_coordinates;  // a second set
+  vec2 reserved;
 };
 
 struct Sphere {
@@ -181,6 +197,8 @@ layout(set = 0, binding = 9, std430) readonly buffer PrimitiveLights { uint prim
 layout(set = 0, binding = 10, std430) readonly buffer Spheres { Sphere spheres[]; };
 layout(set = 0, binding = 11, std430) readonly buffer EnvironmentCells { EnvironmentCell environment_cells[]; };
 layout(set = 0, binding = 12, std430) readonly buffer Media { Medium media[]; };
+
+layout(set = 0, binding = 14, std430) readonly buffer Attributes { VertexAttributes vertex_attributes[]; };
 
 struct RenderConstants {
   vec3 camera_position;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/progress.hpp"
+#include "base/threads.hpp"
 #include "tools/command.hpp"
 #include "tools/options/option_words.hpp"
 #include "tools/output/interruption.hpp"
@@ -70,6 +71,7 @@ int run(int argc, char** argv) {
     return fail(error.what());
   }
   note_interrupts();
+  tandem::require_threads();
   return action();
 }
 

@@ -146,6 +146,9 @@ void DeviceScene::upload(rhi::Device& device, const Scene& scene) {
   std::vector<glm::vec2> texture_coordinates = scene.texture_coordinates;
   texture_coordinates.resize(scene.positions.size(), glm::vec2(0));
   texture_coordinates_ = store(std::move(texture_coordinates), "texture coordinates");
+  std::vector<GpuVertexAttributes> attributes = scene.attributes;
+  if (!attributes.empty()) attributes.resize(scene.positions.size());
+  attributes_ = store(std::move(attributes), "vertex attributes");
   TexelStore texels = store_texels(scene);
   textures_ = store(std::move(texels.textures), "textures");
   texels_ = store(std::move(texels.texels), "texels");
@@ -256,7 +259,8 @@ std::vector<rhi::BindGroupEntry> DeviceScene::entries(const rhi::PipelineInterfa
       {.binding = binding::spheres, .resource = rhi::BufferRange{spheres_}},
       {.binding = binding::environment_cells, .resource = rhi::BufferRange{environment_cells_}},
       {.binding = binding::media, .resource = rhi::BufferRange{media_}},
-      {.binding = binding::render, .resource = rhi::BufferRange{constants}}};
+      {.binding = binding::render, .resource = rhi::BufferRange{constants}},
+      {.binding = binding::attributes, .resource = rhi::BufferRange{attributes_}}};
   std::vector<rhi::BindGroupEntry> used;
   for (const rhi::BindGroupEntry& entry : all)
     if (std::ranges::any_of(interface.bindings, [&](const rhi::ShaderBinding& declared) {

@@ -63,8 +63,8 @@ class DeviceScene {
   std::optional<Environment> environment_;
   std::uint32_t medium_ = no_medium;
   bool moves_ = false;
-  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_, texture_coordinates_, textures_, texels_,
-      primitive_lights_, spheres_, environment_cells_, media_;
+  rhi::BufferHandle positions_, normals_, triangles_, materials_, lights_, texture_coordinates_, attributes_, textures_,
+      texels_, primitive_lights_, spheres_, environment_cells_, media_;
   /// A bottom level and what to build it from, until it is built.
   struct BottomLevel {
     rhi::AccelerationStructureHandle structure;

@@ -31,7 +31,7 @@ Features features_of(const Scene& scene) {
   Features features = 0;
   for (const GpuMaterial& material : scene.materials) {
     if (is_transparent(material)) features |= feature::transparency;
-    if (needs_textures(scene, material)) features |= feature::textures;
+    if (needs_textures(scene, material) || material.attributes != 0) features |= feature::textures;
     if (material.model == MaterialModel::boundary)
       features |= feature::media;
     else if (!is_basic(material.model))

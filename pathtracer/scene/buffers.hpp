@@ -5,6 +5,7 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
 
 /// The structures of shaders/scene.glsl, byte for byte (std430). What each member means is said there; what a shader
 /// never reads is left out here.
@@ -40,11 +41,21 @@ inline constexpr std::uint32_t spheres = 10;
 inline constexpr std::uint32_t environment_cells = 11;
 inline constexpr std::uint32_t media = 12;
 inline constexpr std::uint32_t render = 13;  ///< RenderConstants
+inline constexpr std::uint32_t attributes = 14;
 }  // namespace binding
 
 inline constexpr std::uint32_t no_texture = 0xffffffffu;
 inline constexpr std::uint32_t no_medium = 0xffffffffu;
 inline constexpr std::uint32_t no_light = 0xffffffffu;
+
+/// What of GpuVertexAttributes counts for a material.
+namespace vertex_attribute {
+inline constexpr std::uint32_t color = 1;
+inline constexpr std::uint32_t opacity = 2;
+inline constexpr std::uint32_t tangent = 4;
+inline constexpr std::uint32_t texture_coordinates = 8;
+inline constexpr std::uint32_t emission = 16;  ///< with color
+}  // namespace vertex_attribute
 
 struct GpuMaterial {
   glm::vec3 base_color{0.5f};
@@ -76,7 +87,8 @@ struct GpuMaterial {
   std::uint32_t bump_texture = no_texture;
   std::uint32_t medium = no_medium;
   float alpha_cutoff = 0;
-  std::uint32_t reserved[3] = {};
+  std::uint32_t attributes = 0;  ///< of vertex_attribute
+  std::uint32_t reserved[2] = {};
 };
 static_assert(sizeof(GpuMaterial) == 176);
 
@@ -100,7 +112,7 @@ struct GpuTexture {
   glm::vec3 u_row{1, 0, 0};
   float scale = 1;
   glm::vec3 v_row{0, 1, 0};
-  std::uint32_t reserved = 0;
+  std::uint32_t coordinates = 0;  ///< which set of texture coordinates: 0, or 1 for that of GpuVertexAttributes
   glm::vec3 color_a{1};
   float alpha_a = 1;
   glm::vec3 color_b{0};
@@ -142,6 +154,15 @@ struct GpuTriangle {
   std::uint32_t material;
 };
 static_assert(sizeof(GpuTriangle) == 16);
+
+struct GpuVertexAttributes {
+  glm::vec4 tangent{1, 0, 0, 1};
+  glm::vec3 color{1};
+  float opacity = 1;
+  glm::vec2 texture_coordinates{0};
+  glm::vec2 reserved{0};
+};
+static_assert(sizeof(GpuVertexAttributes) == 48);
 
 struct GpuSphere {
   glm::vec3 centre{0};

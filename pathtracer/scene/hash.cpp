@@ -64,6 +64,7 @@ std::string scene_hash(const Scene& scene) {
   hasher.add(scene.positions);
   hasher.add(scene.normals);
   hasher.add(scene.texture_coordinates);
+  if (!scene.attributes.empty()) hasher.add(scene.attributes);
   hasher.add(scene.triangles);
   hasher.add(scene.spheres);
   hasher.add(scene.materials);

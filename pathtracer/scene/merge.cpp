@@ -75,6 +75,9 @@ void transform_geometry(Scene& model, const Placement& placement) {
   const glm::dmat3 for_normals = glm::transpose(glm::inverse(linear));
   for (glm::vec3& position : model.positions) position = placement.point(position, model.name);
   for (glm::vec3& normal : model.normals) normal = direction_of(for_normals, normal);
+  const float handedness = glm::determinant(linear) < 0 ? -1.0f : 1.0f;
+  for (GpuVertexAttributes& vertex : model.attributes)
+    vertex.tangent = glm::vec4(direction_of(linear, glm::vec3(vertex.tangent)), vertex.tangent.w * handedness);
   if (glm::determinant(linear) < 0)
     for (GpuTriangle& triangle : model.triangles) std::swap(triangle.vertices[1], triangle.vertices[2]);
   if (model.spheres.empty()) return;
@@ -128,9 +131,14 @@ void append(Scene& scene, Scene model, const glm::dmat4& transform) {
     scene.texture_coordinates.resize(scene.positions.size(), glm::vec2(0));
     model.texture_coordinates.resize(model.positions.size(), glm::vec2(0));
   }
+  if (scene.attributes.empty() != model.attributes.empty()) {
+    scene.attributes.resize(scene.positions.size());
+    model.attributes.resize(model.positions.size());
+  }
   append(scene.positions, std::move(model.positions));
   append(scene.normals, std::move(model.normals));
   append(scene.texture_coordinates, std::move(model.texture_coordinates));
+  append(scene.attributes, std::move(model.attributes));
   append(scene.triangles, std::move(model.triangles));
   append(scene.spheres, std::move(model.spheres));
   append(scene.materials, std::move(model.materials));

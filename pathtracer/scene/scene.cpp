@@ -54,7 +54,8 @@ bool has_texture(const GpuMaterial& material) {
 }
 
 bool is_transparent(const GpuMaterial& material) {
-  return material.opacity < 1 || material.alpha_texture != no_texture;
+  return material.opacity < 1 || material.alpha_texture != no_texture ||
+         (material.attributes & vertex_attribute::opacity) != 0;
 }
 
 bool is_transparent(const Scene& scene, const GpuTriangle& triangle) {

@@ -63,8 +63,9 @@ struct Scene {
   glm::dvec3 origin{0};              ///< where the file has the point that is 0,0,0 here (scene/local_origin.hpp)
   std::vector<glm::vec3> positions;  ///< finite
   std::vector<glm::vec3> normals;    ///< one for each position, unit length; meaningful in smooth triangles only
-  std::vector<glm::vec2> texture_coordinates;  ///< one for each position, v upwards; none where nothing has a texture
-  std::vector<GpuTriangle> triangles;          ///< indices in range; at least one, or a sphere
+  std::vector<glm::vec2> texture_coordinates;   ///< one for each position, v upwards; none where nothing has a texture
+  std::vector<GpuVertexAttributes> attributes;  ///< one for each position; none where no material uses them
+  std::vector<GpuTriangle> triangles;           ///< indices in range; at least one, or a sphere
   std::vector<GpuSphere> spheres;
   std::vector<GpuMaterial> materials;       ///< at least one; texture and medium indices in range
   std::vector<std::string> material_names;  ///< one for each material
@@ -85,7 +86,8 @@ Bounds bounds(const Scene& scene);
 /// Square units of the file; 0 for a degenerate triangle. Computed in double precision.
 double triangle_area(const Scene& scene, const GpuTriangle& triangle);
 
-/// Whether a ray may pass through points of it: it has an opacity below 1 or an alpha texture.
+/// Whether a ray may pass through points of it: it has an opacity below 1, an alpha texture, or opacities of its
+/// vertices.
 bool is_transparent(const GpuMaterial& material);
 bool is_transparent(const Scene& scene, const GpuTriangle& triangle);
 

@@ -30,8 +30,8 @@ uint parameter_texture(uint material, uint member) {
   }
 }
 
-/// @param uv, position where the surface is: what textures are read at
-precise BsdfParameters bsdf_parameters(uint material, bool outside, vec2 uv, vec3 position) {
+/// @param uv, position where the surface is: what textures are read at @param tint of the vertices
+precise BsdfParameters bsdf_parameters(uint material, bool outside, vec4 uv, vec3 position, vec3 tint) {
   BsdfParameters parameters;
   parameters.model = materials[material].model;
   parameters.base_color = materials[material].base_color;
@@ -50,6 +50,7 @@ precise BsdfParameters bsdf_parameters(uint material, bool outside, vec2 uv, vec
     parameters.glossy_only = false;
   }
   if (FEATURE_TEXTURES) {
+    parameters.base_color *= tint;
     // A loop, so that the code that reads a texture is there once.
     const uint count = FEATURE_MATERIALS ? 8 : 3;
     for (uint member = 0; member < count; ++member) {

@@ -7,7 +7,8 @@
 #include "scene.glsl"
 #include "texture/texture.glsl"
 
-/// How a surface's point moves with its texture coordinates; zero where that is not known.
+/// How a surface's point moves with its texture coordinates, or, where the vertices have tangents, with those of its normal
+/// map; zero where that is not known.
 struct SurfaceDerivatives {
   vec3 by_u;
   vec3 by_v;
@@ -31,12 +32,17 @@ bool has_normal_map(uint material) {
   return materials[material].normal_texture != NO_TEXTURE || materials[material].bump_texture != NO_TEXTURE;
 }
 
+/// The normal map, or without one the bump map, of a material that has either.
+uint bending_texture(uint material) {
+  uint map = materials[material].normal_texture;
+  return map != NO_TEXTURE ? map : materials[material].bump_texture;
+}
+
 /// The unit normal that a material's normal map, or without one its bump map (an image), makes of `normal` where the
-/// vertices' texture coordinates are uv. All is seen from the side of the triangle's own normal. `derivatives` are with
-/// respect to uv.
-precise vec3 mapped_normal(uint material, vec3 normal, SurfaceDerivatives derivatives, vec2 uv, vec3 position) {
+/// vertices' texture coordinates are uv. All is seen from the side of the triangle's own normal.
+precise vec3 mapped_normal(uint material, vec3 normal, SurfaceDerivatives derivatives, vec4 uv, vec3 position) {
   bool is_bump = materials[material].normal_texture == NO_TEXTURE;
-  uint texture_index = is_bump ? materials[material].bump_texture : materials[material].normal_texture;
+  uint texture_index = bending_texture(material);
   if (is_bump && textures[texture_index].kind != TEXTURE_IMAGE) return normal;
 
   // Derivatives with respect to the texture's own coordinates s and t: the inverse of its transform's linear part.
@@ -45,8 +51,12 @@ precise vec3 mapped_normal(uint material, vec3 normal, SurfaceDerivatives deriva
   precise float determinant = u_row.x * v_row.y - u_row.y * v_row.x;
   if (!(abs(determinant) > 1e-20)) return normal;
   float inverse = det_div(1.0, determinant);
-  vec3 by_s = (derivatives.by_u * v_row.y - derivatives.by_v * v_row.x) * inverse;
-  vec3 by_t = (derivatives.by_v * u_row.x - derivatives.by_u * u_row.y) * inverse;
+  precise vec3 by_s = (derivatives.by_u * v_row.y - derivatives.by_v * v_row.x) * inverse;
+  precise vec3 by_t = (derivatives.by_v * u_row.x - derivatives.by_u * u_row.y) * inverse;
+  if ((materials[material].attributes & ATTRIBUTE_TANGENT) != 0) {
+    by_s = derivatives.by_u;
+    by_t = derivatives.by_v;
+  }
   // Its directions in the tangent plane, along which the other coordinate stays the same but for the skew.
   vec3 along_s = det_normalize(by_s - normal * det_dot(normal, by_s), vec3(0.0));
   vec3 across_s = det_cross(normal, along_s);

@@ -15,13 +15,14 @@ precise float opacity_at(uint triangle_index, vec2 barycentrics) {
   if (!FEATURE_TRANSPARENCY) return 1.0;
   Triangle triangle = triangles[triangle_index];
   uint material = triangle.material & ~TRIANGLE_SMOOTH;
-  vec2 uv = vec2(0.0);
+  vec4 uv = vec4(0.0);
   vec3 position = vec3(0.0);
   if (materials[material].alpha_texture != NO_TEXTURE) {
-    uv = surface_texture_coordinates(triangle.vertices, barycentrics);
+    uv = surface_texture_coordinates(material, triangle.vertices, barycentrics);
     position = barycentric_point(triangle_vertices(triangle.vertices), barycentrics);
   }
-  return material_opacity(material, uv, position);
+  float factor = FEATURE_TEXTURES ? surface_tint(material, triangle.vertices, barycentrics).w : 1.0;
+  return material_opacity(material, uv, position, factor);
 }
 
 /// Whether a ray meets a triangle that lies on it. The answer depends on nothing else, so it is the same in a loop over

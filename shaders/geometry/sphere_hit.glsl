@@ -24,7 +24,7 @@ bool meets_side(uint sphere_index, uint side, vec3 centre, vec3 origin, vec3 dir
   if (materials[material].opacity >= 1.0 && materials[material].alpha_texture == NO_TEXTURE) return true;
   precise vec3 normal = sphere_normal(centre, origin, direction, t);
   precise vec3 position = centre + normal * spheres[sphere_index].radius;
-  precise float opacity = material_opacity(material, sphere_texture_coordinates(normal), position);
+  precise float opacity = material_opacity(material, both_sets(sphere_texture_coordinates(normal)), position, 1.0);
   uvec4 bits = pcg4d(uvec4(floatBitsToUint(direction), 2 * sphere_index + side));
   bits = pcg4d(bits ^ uvec4(floatBitsToUint(origin), 0u));
   return unit_interval(bits.x) < opacity;

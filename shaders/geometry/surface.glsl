@@ -26,18 +26,62 @@ vec2 vertex_texture_coordinates(uint vertex) {
   return vec2(texture_coordinates[2 * vertex], texture_coordinates[2 * vertex + 1]);
 }
 
-precise vec2 surface_texture_coordinates(uvec3 vertices, vec2 barycentrics) {
-  return (vertex_texture_coordinates(vertices.x) * ((1.0 - barycentrics.x) - barycentrics.y) +
-          vertex_texture_coordinates(vertices.y) * barycentrics.x) +
-         vertex_texture_coordinates(vertices.z) * barycentrics.y;
+/// Whether any of these attributes of the vertices counts. @param bits ATTRIBUTE_*
+bool has_attribute(uint material, uint bits) {
+  return FEATURE_TEXTURES && (materials[material].attributes & bits) != 0;
 }
 
-/// How the texture coordinates of a triangle go with its points.
-precise SurfaceDerivatives surface_derivatives(uvec3 vertices, TriangleVertices triangle) {
-  vec2 uv = vertex_texture_coordinates(vertices.x);
-  return triangle_derivatives(triangle.b - triangle.a, triangle.c - triangle.a,
-                              vertex_texture_coordinates(vertices.y) - uv,
-                              vertex_texture_coordinates(vertices.z) - uv);
+/// Both sets of texture coordinates.
+precise vec4 surface_texture_coordinates(uint material, uvec3 vertices, vec2 barycentrics) {
+  float weight = (1.0 - barycentrics.x) - barycentrics.y;
+  precise vec2 first = (vertex_texture_coordinates(vertices.x) * weight +
+                        vertex_texture_coordinates(vertices.y) * barycentrics.x) +
+                       vertex_texture_coordinates(vertices.z) * barycentrics.y;
+  if (!has_attribute(material, ATTRIBUTE_TEXTURE_COORDINATES)) return vec4(first, vec2(0.0));
+  precise vec2 second = (vertex_attributes[vertices.x].texture_coordinates * weight +
+                         vertex_attributes[vertices.y].texture_coordinates * barycentrics.x) +
+                        vertex_attributes[vertices.z].texture_coordinates * barycentrics.y;
+  return vec4(first, second);
+}
+
+/// The vertices' factors on the base colour, and on the opacity.
+precise vec4 surface_tint(uint material, uvec3 vertices, vec2 barycentrics) {
+  vec4 tint = vec4(1.0);
+  if (!has_attribute(material, ATTRIBUTE_COLOR | ATTRIBUTE_OPACITY)) return tint;
+  float weight = (1.0 - barycentrics.x) - barycentrics.y;
+  precise vec4 sum = vec4(0.0);
+  for (uint corner = 0; corner < 3; ++corner) {
+    uint vertex = vertices[corner];
+    float part = corner == 0 ? weight : barycentrics[corner - 1];
+    sum += vec4(vertex_attributes[vertex].color, vertex_attributes[vertex].opacity) * part;
+  }
+  if (has_attribute(material, ATTRIBUTE_COLOR)) tint.xyz = sum.xyz;
+  if (has_attribute(material, ATTRIBUTE_OPACITY)) tint.w = sum.w;
+  return tint;
+}
+
+/// How the texture coordinates of a triangle, those of its normal map, go with its points; or the vertices' tangents.
+precise SurfaceDerivatives surface_derivatives(uint material, uvec3 vertices, TriangleVertices triangle,
+                                               vec2 barycentrics, vec3 normal) {
+  if (has_attribute(material, ATTRIBUTE_TANGENT)) {
+    float weight = (1.0 - barycentrics.x) - barycentrics.y;
+    precise vec3 tangent = (vertex_attributes[vertices.x].tangent.xyz * weight +
+                            vertex_attributes[vertices.y].tangent.xyz * barycentrics.x) +
+                           vertex_attributes[vertices.z].tangent.xyz * barycentrics.y;
+    SurfaceDerivatives given;
+    given.by_u = tangent;
+    given.by_v = det_cross(normal, tangent) * vertex_attributes[vertices.x].tangent.w;
+    return given;
+  }
+  uint map = bending_texture(material);
+  vec2 corners[3];
+  for (uint corner = 0; corner < 3; ++corner) {
+    uint vertex = vertices[corner];
+    corners[corner] = textures[map].coordinates == 0 ? vertex_texture_coordinates(vertex)
+                                                     : vertex_attributes[vertex].texture_coordinates;
+  }
+  return triangle_derivatives(triangle.b - triangle.a, triangle.c - triangle.a, corners[1] - corners[0],
+                              corners[2] - corners[0]);
 }
 
 struct Surface {
@@ -47,7 +91,9 @@ struct Surface {
   float offset;           // offset_distance of the position
   bool outside;           // the ray came from the side of a triangle's own (counter-clockwise) normal, or from out of a sphere
   uint material;
-  vec2 texture_coordinates;  // with FEATURE_TEXTURES
+  // With FEATURE_TEXTURES:
+  vec4 texture_coordinates;  // both sets
+  vec3 tint;                 // factor on the base colour
 };
 
 /// surface_at for a sphere, without its normal map.
@@ -66,7 +112,8 @@ precise Surface sphere_surface(uint sphere_index, vec3 origin, vec3 direction, f
   surface.geometric_normal = surface.outside ? normal : -normal;
   surface.shading_normal = surface.geometric_normal;
   surface.offset = sphere_offset(centre, radius, normal);
-  surface.texture_coordinates = FEATURE_TEXTURES ? sphere_texture_coordinates(normal) : vec2(0.0);
+  surface.texture_coordinates = FEATURE_TEXTURES ? both_sets(sphere_texture_coordinates(normal)) : vec4(0.0);
+  surface.tint = vec3(1.0);
   derivatives.by_u = sphere_derivative_by_u(radius, normal);
   derivatives.by_v = sphere_derivative_by_v(radius, normal);
   return surface;
@@ -89,7 +136,8 @@ precise Surface triangle_surface(uint primitive, vec3 origin, vec3 direction, ou
   surface.offset = offset_distance(surface.position, normal, triangle_extent(triangle));
 
   surface.texture_coordinates =
-      FEATURE_TEXTURES ? surface_texture_coordinates(vertices, barycentrics) : vec2(0.0);
+      FEATURE_TEXTURES ? surface_texture_coordinates(surface.material, vertices, barycentrics) : vec4(0.0);
+  surface.tint = FEATURE_TEXTURES ? surface_tint(surface.material, vertices, barycentrics).xyz : vec3(1.0);
 
   if ((material & TRIANGLE_SMOOTH) != 0) {
     precise vec3 interpolated = (vertex_normal(vertices.x) * ((1.0 - barycentrics.x) - barycentrics.y) +
@@ -102,7 +150,10 @@ precise Surface triangle_surface(uint primitive, vec3 origin, vec3 direction, ou
   }
   derivatives.by_u = vec3(0.0);
   derivatives.by_v = vec3(0.0);
-  if (has_normal_map(surface.material)) derivatives = surface_derivatives(vertices, triangle);
+  if (has_normal_map(surface.material)) {
+    precise vec3 front = surface.outside ? surface.shading_normal : -surface.shading_normal;
+    derivatives = surface_derivatives(surface.material, vertices, triangle, barycentrics, front);
+  }
   return surface;
 }
 

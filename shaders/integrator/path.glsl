@@ -28,7 +28,7 @@ struct Origin {
 
 /// Radiance of a surface that the ray meets, weighted against next event estimation.
 precise vec3 weighted_emission(Surface surface, uint primitive, Origin origin, vec3 direction, float time) {
-  vec3 radiance = emitted_radiance(surface.material, surface.texture_coordinates, surface.position);
+  vec3 radiance = emitted_radiance(surface.material, surface.texture_coordinates, surface.position, surface.tint);
   if (max_component(radiance) == 0.0 || origin.density == 0.0) return radiance;
   float density =
       light_density(primitive, origin.position, direction, surface.position, surface.geometric_normal, time);
@@ -103,7 +103,7 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
                                                                vertex.surface.position, vertex.surface.offset,
                                                                vertex.surface.geometric_normal,
                                                                vertex.surface.shading_normal,
-                                                               vertex.surface.texture_coordinates);)
+                                                               vertex.surface.texture_coordinates.xy);)
 
     if (FEATURE_MEDIA && medium != NO_MEDIUM && !occlusion) {
       precise float surface_distance = RAY_LENGTH;
@@ -163,7 +163,8 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     vertex.wo = to_local(vertex.frame, -direction);
     if (!vertex.in_medium) {
       vertex.parameters = bsdf_parameters(vertex.surface.material, vertex.surface.outside,
-                                          vertex.surface.texture_coordinates, vertex.surface.position);
+                                          vertex.surface.texture_coordinates, vertex.surface.position,
+                                          vertex.surface.tint);
       // Occlusion is what a white diffuse surface under a white sky shows.
       if (occlusion) {
         vertex.parameters.model = MATERIAL_DIFFUSE;

@@ -7,11 +7,12 @@
 #include "scene.glsl"
 #include "texture/texture.glsl"
 
-/// @param uv, position where: what textures are read at
-precise vec3 emitted_radiance(uint material, vec2 uv, vec3 position) {
+/// @param uv, position where: what textures are read at @param tint of the vertices
+precise vec3 emitted_radiance(uint material, vec4 uv, vec3 position, vec3 tint) {
   vec3 radiance = materials[material].emission;
   // Most surfaces emit nothing: their textures are not worth a look.
   if (!FEATURE_TEXTURES || max_component(radiance) == 0.0) return radiance;
+  if ((materials[material].attributes & ATTRIBUTE_EMISSION) != 0) radiance *= tint;
   return radiance * texture_color(materials[material].emission_texture, uv, position);
 }
 

@@ -84,9 +84,9 @@ precise LightSample sample_sphere_light(uint index, vec3 position, vec2 u, float
                                              light.target_normal);
   if (light.density == 0.0) return light;
   uint material = spheres[sphere].material;
-  vec2 uv = FEATURE_TEXTURES ? sphere_texture_coordinates(light.target_normal) : vec2(0.0);
-  light.radiance = emitted_radiance(material, uv, light.target);
-  if (FEATURE_TRANSPARENCY) light.radiance *= material_opacity(material, uv, light.target);
+  vec4 uv = FEATURE_TEXTURES ? both_sets(sphere_texture_coordinates(light.target_normal)) : vec4(0.0);
+  light.radiance = emitted_radiance(material, uv, light.target, vec3(1.0));
+  if (FEATURE_TRANSPARENCY) light.radiance *= material_opacity(material, uv, light.target, 1.0);
   return light;
 }
 

@@ -29,8 +29,9 @@ precise LightSample sample_triangle_light(uint index, vec3 position, vec2 u) {
       solid_angle_density(lights[index].area_density, position, light.direction, light.target, light.target_normal);
   if (light.density == 0.0) return light;
   uint material = triangles[light.primitive].material & ~TRIANGLE_SMOOTH;
-  vec2 uv = FEATURE_TEXTURES ? surface_texture_coordinates(vertices, barycentrics) : vec2(0.0);
-  light.radiance = emitted_radiance(material, uv, light.target) * opacity_at(light.primitive, barycentrics);
+  vec4 uv = FEATURE_TEXTURES ? surface_texture_coordinates(material, vertices, barycentrics) : vec4(0.0);
+  vec3 tint = FEATURE_TEXTURES ? surface_tint(material, vertices, barycentrics).xyz : vec3(1.0);
+  light.radiance = emitted_radiance(material, uv, light.target, tint) * opacity_at(light.primitive, barycentrics);
   return light;
 }
 

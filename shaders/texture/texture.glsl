@@ -9,8 +9,12 @@
 #include "texture/image.glsl"
 #include "texture/noise.glsl"
 
-/// A texture's own coordinates where the vertices' are uv.
-precise vec2 texture_transform(uint texture_index, vec2 uv) {
+/// Of a surface that has but one set.
+vec4 both_sets(vec2 uv) { return vec4(uv, uv); }
+
+/// A texture's own coordinates where the two sets of the vertices' are uv.
+precise vec2 texture_transform(uint texture_index, vec4 sets) {
+  vec2 uv = FEATURE_TEXTURES && textures[texture_index].coordinates != 0 ? sets.zw : sets.xy;
   vec3 u_row = textures[texture_index].u_row;
   vec3 v_row = textures[texture_index].v_row;
   return vec2((u_row.x * uv.x + u_row.y * uv.y) + u_row.z, (v_row.x * uv.x + v_row.y * uv.y) + v_row.z);
@@ -28,13 +32,13 @@ precise vec4 texture_at_own(uint texture_index, vec2 st, vec3 position) {
   return a + (b - a) * turbulence(position * scale);
 }
 
-/// r, g, b and alpha at a texture coordinate (v = 0 is the lower edge) and a point in world space; 1 for NO_TEXTURE.
-precise vec4 texture_at(uint texture_index, vec2 uv, vec3 position) {
+/// r, g, b and alpha at texture coordinates (v = 0 is the lower edge), two sets of them, and a point in world space; 1 for NO_TEXTURE.
+precise vec4 texture_at(uint texture_index, vec4 uv, vec3 position) {
   if (texture_index == NO_TEXTURE) return vec4(1.0);
   return texture_at_own(texture_index, texture_transform(texture_index, uv), position);
 }
 
-precise vec3 texture_color(uint texture_index, vec2 uv, vec3 position) {
+precise vec3 texture_color(uint texture_index, vec4 uv, vec3 position) {
   return texture_at(texture_index, uv, position).xyz;
 }
 
@@ -55,7 +59,7 @@ precise float texture_channel(uint texture_index, vec4 value) {
 }
 
 /// The number that the texture's channel holds; 1 for NO_TEXTURE.
-precise float texture_value(uint texture_index, vec2 uv, vec3 position) {
+precise float texture_value(uint texture_index, vec4 uv, vec3 position) {
   if (texture_index == NO_TEXTURE) return 1.0;
   return texture_channel(texture_index, texture_at(texture_index, uv, position));
 }

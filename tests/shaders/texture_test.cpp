@@ -108,9 +108,9 @@ std::vector<float> read_textures(rhi::Device& device, const Scene& scene, const 
                                                           .body = R"(
     vec2 uv = vec2(input_float(1), input_float(2));
     vec3 position = vec3(input_float(3), input_float(4), input_float(5));
-    vec4 value = texture_at(input_bits(0), uv, position);
+    vec4 value = texture_at(input_bits(0), both_sets(uv), position);
     output_float(0, value.x); output_float(1, value.y); output_float(2, value.z); output_float(3, value.w);
-    output_float(4, texture_value(input_bits(0), uv, position));)",
+    output_float(4, texture_value(input_bits(0), both_sets(uv), position));)",
                                                           .input_count = 6,
                                                           .output_count = 5},
                                                          inputs);

@@ -51,6 +51,7 @@ int measure_speed(const Options& options) {
       BenchSeries& series = report.series[index];
       renderer.restart(job.settings);
       compare::compile(renderer, progress_bars());
+      if (round == 0) series.compile_milliseconds = renderer.compile_milliseconds();
       const std::string label = fmt::format("round {} of {}, {}", round, options.rounds, series.device.name);
       if (!renderer.render(job.samples, progress_bar(label))) throw Cancelled();
       series.rays = renderer.ray_count();

@@ -48,8 +48,9 @@ std::string table(const BenchReport& report) {
   }
   text += '\n';
   for (const BenchSeries& series : report.series) {
-    fmt::format_to(std::back_inserter(text), "{:<12}{}, {}, trace {}\n", series.device.name, series.device.description,
-                   series.device.driver, pathtracer::name(series.trace));
+    fmt::format_to(std::back_inserter(text), "{:<12}{}, {}, trace {}, shaders compiled in {:.1f} s\n",
+                   series.device.name, series.device.description, series.device.driver, pathtracer::name(series.trace),
+                   series.compile_milliseconds / 1000);
   }
   return text;
 }
@@ -66,6 +67,7 @@ nlohmann::ordered_json to_json(const BenchReport& report) {
     entry["ms"] = spread_json(times);
     entry["ms_rounds"] = series.milliseconds;
     entry["build_ms"] = series.build_milliseconds;
+    entry["compile_ms"] = series.compile_milliseconds;
     entry["rays"] = series.rays;
     entry["mrays"] = per_second_in_millions(static_cast<double>(series.rays), times.median);
     entry["msamples"] = per_second_in_millions(camera_paths(report.job), times.median);

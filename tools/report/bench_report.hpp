@@ -15,9 +15,10 @@ namespace tandem::tools {
 struct BenchSeries {
   rhi::DeviceInfo device;
   pathtracer::TracingMode trace = pathtracer::TracingMode::query;
-  std::uint64_t rays = 0;            ///< of one round
-  double build_milliseconds = 0.0;   ///< of the acceleration structures, once
-  std::vector<double> milliseconds;  ///< of each round
+  std::uint64_t rays = 0;             ///< of one round
+  double build_milliseconds = 0.0;    ///< of the acceleration structures, once
+  double compile_milliseconds = 0.0;  ///< of the shaders, in the round that warms up
+  std::vector<double> milliseconds;   ///< of each round
 };
 
 struct BenchReport {

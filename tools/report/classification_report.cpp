@@ -6,6 +6,8 @@
 #include <iterator>
 #include <vector>
 
+#include "tools/report/device_json.hpp"
+
 namespace tandem::tools {
 namespace {
 
@@ -83,11 +85,11 @@ nlohmann::ordered_json to_json(const Divergence& divergence) {
     json["field"] = divergence.field->name;
     json["a"] = compare::field_text(*divergence.field, divergence.a);
     json["b"] = compare::field_text(*divergence.field, divergence.b);
-    json["ulp"] = divergence.ulp_distance;
+    json["ulp"] = number_or_null(divergence.ulp_distance);
   } else {
     json["event_b"] = compare::name(divergence.b.kind());
   }
-  if (divergence.exact_answer) json["exact"] = *divergence.exact_answer;
+  if (divergence.exact_answer) json["exact"] = number_or_null(*divergence.exact_answer);
   json["sentence"] = divergence.sentence;
   return json;
 }

@@ -2,6 +2,11 @@
 
 namespace tandem::tools {
 
+nlohmann::ordered_json number_or_null(std::uint32_t value) {
+  constexpr std::uint32_t none = 0xffffffffu;
+  return value == none ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
+}
+
 const char* kind_name(rhi::DeviceKind kind) {
   switch (kind) {
     case rhi::DeviceKind::discrete_gpu:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -16,6 +17,9 @@ nlohmann::ordered_json to_json(const rhi::DeviceInfo& device);
 
 /// to_json with capabilities and limits.
 nlohmann::ordered_json to_json_in_full(const rhi::DeviceInfo& device);
+
+/// 2^32 - 1 is null: no distance between values that are no floats, no primitive that a ray meets.
+nlohmann::ordered_json number_or_null(std::uint32_t value);
 
 /// "discrete GPU", "CPU", ...
 const char* kind_name(rhi::DeviceKind kind);

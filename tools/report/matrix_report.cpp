@@ -92,6 +92,9 @@ std::string table(const MatrixReport& report) {
   const compare::Vote& vote = report.vote;
   line("scene", scene_text(report.job));
   line("settings", settings_text(report.job));
+  for (const compare::Rendering& rendering : report.renderings)
+    line(rendering.device.name,
+         fmt::format("{:.1f} ms, compiling {:.1f} ms", rendering.milliseconds, rendering.compile_milliseconds));
   text += '\n';
   std::string header;
   for (const compare::Rendering& rendering : report.renderings) header += fmt::format("{:>20}", rendering.device.name);

@@ -1,8 +1,19 @@
 // The numbers of `tandem diff --json` as tables. A cell that shows one has its place in the JSON as data-key.
 
+/** As people read it: six digits of numbers that are not whole. */
+function valueWords(value) {
+  if (value === null) return "none";
+  if (Array.isArray(value)) return value.map(valueWords).join(", ");
+  if (typeof value === "object") return JSON.stringify(value);
+  return typeof value === "number" && !Number.isInteger(value) ? plainText(value.toPrecision(6)) : String(value);
+}
+
+/** The value, and in full where the pointer rests on it. */
 function cell(key, value) {
-  const text = value === null ? "none" : typeof value === "object" ? JSON.stringify(value) : String(value);
+  const text = valueWords(value);
   const result = element("td", {className: text.length > 24 ? "value long" : "value"}, text);
+  const whole = typeof value === "object" ? JSON.stringify(value) : String(value);
+  if (text !== whole && value !== null) result.title = whole;
   result.dataset.key = key;
   return result;
 }
@@ -46,10 +57,21 @@ function isSentences(value) {
 
 /** Objects as the rows of one table. */
 function arrayTables(key, items) {
-  const names = [...new Set(items.flatMap((item) => (isScalar(item) ? [] : Object.keys(item))))];
-  const rows = items.slice(0, mostRows).map((item, i) => element("tr", {}, ...(isScalar(item)
-    ? [cell(`${key}.${i}`, item)]
-    : names.map((name) => (name in item ? cell(`${key}.${i}.${name}`, item[name]) : element("td"))))));
+  // A sentence has a row of its own, below the others.
+  const isLong = (name) => items.some((item) => !isScalar(item) && typeof item[name] === "string" && item[name].length > 40);
+  const all = [...new Set(items.flatMap((item) => (isScalar(item) ? [] : Object.keys(item))))];
+  const names = all.filter((name) => !isLong(name));
+  const rows = items.slice(0, mostRows).flatMap((item, i) => {
+    if (isScalar(item)) return [element("tr", {}, cell(`${key}.${i}`, item))];
+    const cells = names.map((name) => (name in item ? cell(`${key}.${i}.${name}`, item[name]) : element("td")));
+    const sentences = all.filter((name) => isLong(name) && name in item).map((name) => {
+      const sentence = cell(`${key}.${i}.${name}`, item[name]);
+      sentence.colSpan = names.length;
+      sentence.className = "sentence";
+      return element("tr", {}, sentence);
+    });
+    return [element("tr", {className: sentences.length > 0 ? "above" : ""}, ...cells), ...sentences];
+  });
   const rest = items.length - rows.length;
   const note = rest > 0 ? [element("p", {className: "hint"}, `${countText(rest, "more row")} in the JSON below.`)] : [];
   return [table(names.length > 0 ? names.map(label) : null, rows), ...note];

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,19 +32,23 @@ struct Reading {
   std::vector<GltfNode> nodes;
   /// Those that nodes have used so far, with their weights of morph targets.
   std::map<std::pair<int, std::vector<double>>, std::vector<GltfPrimitive>> meshes;
-  std::map<std::pair<std::size_t, std::array<float, 4>>, std::uint32_t> colored;  ///< index into the scene's materials
+  /// Index into the scene's materials, by the document's, GpuMaterial::attributes and a colour.
+  std::map<std::tuple<std::size_t, std::uint32_t, std::array<float, 4>>, std::uint32_t> colored;
 };
 
 /// The scene's material for a primitive. Those of the file keep their index; others are appended.
 std::uint32_t scene_material(Reading& reading, const GltfPrimitive& primitive) {
   const GltfMaterial& material = reading.materials[primitive.material];
   const bool is_default = primitive.material + 1 == reading.materials.size();
-  if (primitive.color == glm::vec4(1) && !is_default) return static_cast<std::uint32_t>(primitive.material);
-  const auto [entry, is_new] = reading.colored.try_emplace(
-      {primitive.material, {primitive.color.r, primitive.color.g, primitive.color.b, primitive.color.a}},
-      static_cast<std::uint32_t>(reading.scene.materials.size()));
+  if (primitive.color == glm::vec4(1) && primitive.attributes == 0 && !is_default)
+    return static_cast<std::uint32_t>(primitive.material);
+  const auto [entry, is_new] =
+      reading.colored.try_emplace({primitive.material,
+                                   primitive.attributes,
+                                   {primitive.color.r, primitive.color.g, primitive.color.b, primitive.color.a}},
+                                  static_cast<std::uint32_t>(reading.scene.materials.size()));
   if (is_new) {
-    reading.scene.materials.push_back(colored_material(material, primitive.color));
+    reading.scene.materials.push_back(colored_material(material, primitive.color, primitive.attributes));
     reading.scene.material_names.push_back(material.name);
   }
   return entry->second;
@@ -71,6 +76,24 @@ class NormalTransform {
   glm::dmat3 cofactors_;
   bool is_mirror_;
 };
+
+/// What a vertex has of its own, but its second texture coordinates.
+GpuVertexAttributes attributes_of(const GltfPrimitive& primitive, std::uint32_t vertex, const glm::dmat3& transform) {
+  GpuVertexAttributes attributes;
+  if (!primitive.colors.empty()) {
+    attributes.color = glm::vec3(primitive.colors[vertex]);
+    attributes.opacity = primitive.colors[vertex].a;
+  }
+  if (!primitive.tangents.empty()) {
+    const glm::vec4& tangent = primitive.tangents[vertex];
+    const glm::dvec3 direction = transform * glm::dvec3(tangent);
+    const double length = glm::length(direction);
+    if (length > 0 && std::isfinite(length)) attributes.tangent = glm::vec4(glm::vec3(direction / length), tangent.w);
+    // A mirrored triangle has its normal turned round too.
+    if (glm::determinant(transform) < 0) attributes.tangent.w = -attributes.tangent.w;
+  }
+  return attributes;
+}
 
 /// Whether all corners have a normal, and one of them deviates from the triangle's own by more than a thousandth.
 bool is_smooth(const Scene& scene, const GpuTriangle& triangle) {
@@ -119,6 +142,10 @@ void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& 
   const auto to_world = [&](std::uint32_t corner) {
     return transforms.empty() ? of_node : NormalTransform(glm::dmat3(transforms[corner]));
   };
+  const auto coordinates = [&](std::size_t set, std::uint32_t corner) {
+    const std::vector<glm::vec2>& given = primitive.texture_coordinates[set];
+    return given.empty() ? glm::vec2(0, 1) : given[corner];
+  };
   const std::uint32_t material = scene_material(reading, primitive);
   constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> vertices(primitive.positions.size(), unused);
@@ -134,8 +161,12 @@ void add_primitive(Reading& reading, const GltfNode& node, const GltfPrimitive& 
         vertices[corner] = static_cast<std::uint32_t>(scene.positions.size());
         scene.positions.push_back(checked_position(reading, node, primitive, transform_of(corner), corner));
         scene.normals.push_back(primitive.normals.empty() ? glm::vec3(0) : to_world(corner)(primitive.normals[corner]));
-        scene.texture_coordinates.push_back(
-            primitive.texture_coordinates.empty() ? glm::vec2(0, 1) : primitive.texture_coordinates[corner]);
+        scene.texture_coordinates.push_back(coordinates(0, corner));
+        if (primitive.attributes != 0) {
+          scene.attributes.resize(scene.positions.size());
+          scene.attributes.back() = attributes_of(primitive, corner, glm::dmat3(transform_of(corner)));
+          scene.attributes.back().texture_coordinates = coordinates(1, corner);
+        }
       }
       triangle.vertices[i] = vertices[corner];
     }
@@ -206,6 +237,7 @@ Scene load_gltf(const std::filesystem::path& path, const LoadOptions& options, c
   if (reading.document.has_animations) gltf_warn(reading.document, "animations are not played");
   if (reading.scene.triangles.empty()) throw Error(fmt::format("'{}' holds no triangles", path.string()));
   fill_normals(reading.scene);
+  if (!reading.scene.attributes.empty()) reading.scene.attributes.resize(reading.scene.positions.size());
   if (reading.scene.textures.empty()) reading.scene.texture_coordinates.clear();
   reading.scene.warnings = std::move(reading.document.warnings);
   return std::move(reading.scene);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -56,14 +57,17 @@ std::vector<double> numbers(const tinygltf::Value& array) {
   return result;
 }
 
-/// Whether the textures of the material can use this set of texture coordinates: all use the set of the first.
-bool takes_coordinates(Reading& reading, int set, std::string_view what) {
-  if (reading.result.coordinates < 0) reading.result.coordinates = std::max(set, 0);
-  if (set == reading.result.coordinates) return true;
+/// Which of the material's two sets of texture coordinates this is; nothing for a third one.
+std::optional<std::uint32_t> coordinates_of(Reading& reading, int set, std::string_view what) {
+  std::array<int, 2>& known = reading.result.coordinates;
+  for (std::uint32_t i = 0; i < known.size(); ++i) {
+    if (known[i] < 0) known[i] = std::max(set, 0);
+    if (known[i] == set) return i;
+  }
   gltf_warn(reading.document,
-            fmt::format("{}: {} has no effect, because it uses TEXCOORD_{} and another texture uses TEXCOORD_{}",
-                        reading.owner, what, set, reading.result.coordinates));
-  return false;
+            fmt::format("{}: {} has no effect, because it uses TEXCOORD_{} and other textures use TEXCOORD_{} and _{}",
+                        reading.owner, what, set, known[0], known[1]));
+  return std::nullopt;
 }
 
 std::uint32_t texture(Reading& reading, int index, int set, const tinygltf::ExtensionMap& extensions,
@@ -72,9 +76,10 @@ std::uint32_t texture(Reading& reading, int index, int set, const tinygltf::Exte
   if (const tinygltf::Value* transform = gltf_extension(extensions, "KHR_texture_transform"))
     if (const tinygltf::Value* other = gltf_member(*transform, "texCoord"); other != nullptr && other->IsInt())
       set = other->GetNumberAsInt();
-  if (!takes_coordinates(reading, set, what)) return no_texture;
+  const std::optional<std::uint32_t> coordinates = coordinates_of(reading, set, what);
+  if (!coordinates) return no_texture;
   return add_gltf_texture(reading.document, reading.scene, reading.textures, index, extensions, encoding, channel,
-                          reading.owner);
+                          *coordinates, reading.owner);
 }
 
 /// A textureInfo, as tinygltf has it for each use that it knows.
@@ -225,11 +230,13 @@ std::vector<GltfMaterial> read_gltf_materials(GltfDocument& document, Scene& sce
   return materials;
 }
 
-GpuMaterial colored_material(const GltfMaterial& source, glm::vec4 color) {
+GpuMaterial colored_material(const GltfMaterial& source, glm::vec4 color, std::uint32_t attributes) {
   GpuMaterial material = source.material;
+  material.attributes = attributes;
   (source.emits_color ? material.emission : material.base_color) *= glm::vec3(color);
   if (source.has_alpha) material.opacity *= color.a;
-  if (material.alpha_cutoff > 0 && material.alpha_texture == no_texture) {
+  if (material.alpha_cutoff > 0 && material.alpha_texture == no_texture &&
+      (attributes & vertex_attribute::opacity) == 0) {
     material.opacity = material.opacity >= material.alpha_cutoff ? 1.0f : 0.0f;
     material.alpha_cutoff = 0;
   }

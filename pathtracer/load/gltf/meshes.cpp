@@ -69,7 +69,7 @@ void read_normals(GltfDocument& document, const tinygltf::Primitive& source, con
 }
 
 void read_texture_coordinates(GltfDocument& document, const tinygltf::Primitive& source, int set,
-                              GltfPrimitive& primitive) {
+                              const GltfPrimitive& primitive, std::vector<glm::vec2>& coordinates) {
   if (set < 0) return;
   const auto values = attribute(document, source, primitive, fmt::format("TEXCOORD_{}", set), 2, 2);
   if (!values) {
@@ -82,22 +82,53 @@ void read_texture_coordinates(GltfDocument& document, const tinygltf::Primitive&
     const glm::vec2 coordinate{values->values[2 * i], 1 - values->values[2 * i + 1]};
     const bool finite = std::isfinite(coordinate.x) && std::isfinite(coordinate.y);
     all_finite = all_finite && finite;
-    primitive.texture_coordinates.push_back(finite ? coordinate : glm::vec2(0));
+    coordinates.push_back(finite ? coordinate : glm::vec2(0));
   }
   if (!all_finite)
     gltf_warn(document, fmt::format("{} has texture coordinates that are not finite numbers", primitive.name));
 }
 
-void read_color(GltfDocument& document, const tinygltf::Primitive& source, GltfPrimitive& primitive) {
-  const auto values = attribute(document, source, primitive, "COLOR_0", 3, 4);
+/// Tangents of flat triangles mean nothing (glTF 2.0, 3.7.2.1).
+void read_tangents(GltfDocument& document, const tinygltf::Primitive& source, const std::vector<double>& weights,
+                   const GltfMaterial& material, GltfPrimitive& primitive) {
+  if (primitive.normals.empty() || material.material.normal_texture == no_texture) return;
+  const auto values = attribute(document, source, primitive, "TANGENT", 4, 4);
   if (!values) return;
+  std::vector<glm::vec3> directions(values->count);
+  for (std::size_t i = 0; i < values->count; ++i)
+    directions[i] = {values->values[4 * i], values->values[4 * i + 1], values->values[4 * i + 2]};
+  apply_gltf_morphs(document, source, weights, "TANGENT", primitive.name, directions);
+  for (const glm::vec3& direction : directions)
+    if (const float length = glm::length(direction); !(length > 0 && std::isfinite(length)))
+      return gltf_warn(document,
+                       fmt::format("{} has tangents without direction, which have no effect", primitive.name));
+  for (std::size_t i = 0; i < values->count; ++i)
+    primitive.tangents.emplace_back(directions[i], values->values[4 * i + 3] < 0 ? -1.0f : 1.0f);
+  primitive.attributes |= vertex_attribute::tangent;
+}
+
+void read_colors(GltfDocument& document, const tinygltf::Primitive& source, const GltfMaterial& material,
+                 GltfPrimitive& primitive) {
+  const auto values = attribute(document, source, primitive, "COLOR_0", 3, 4);
+  if (!values || values->count == 0) return;
   const std::size_t n = values->components;
-  for (std::size_t i = n; i < values->values.size(); ++i)
-    if (values->values[i] != values->values[i % n])
-      return gltf_warn(document, "colours that vary over the vertices of a primitive (COLOR_0) have no effect");
-  for (std::size_t i = 0; i < n; ++i)
-    primitive.color[static_cast<int>(i)] =
-        gltf_number(document, double{values->values[i]}, 0, 1, primitive.name, "COLOR_0");
+  for (std::size_t i = 0; i < values->count; ++i) {
+    glm::vec4 color(1);
+    for (std::size_t channel = 0; channel < n; ++channel)
+      color[static_cast<int>(channel)] =
+          gltf_number(document, double{values->values[n * i + channel]}, 0, 1, primitive.name, "COLOR_0");
+    if (!material.has_alpha) color.a = 1;
+    primitive.colors.push_back(color);
+  }
+  if (std::ranges::all_of(primitive.colors, [&](const glm::vec4& color) { return color == primitive.colors[0]; })) {
+    primitive.color = primitive.colors[0];
+    primitive.colors.clear();
+    return;
+  }
+  primitive.attributes |= vertex_attribute::color;
+  if (material.emits_color) primitive.attributes |= vertex_attribute::emission;
+  if (std::ranges::any_of(primitive.colors, [](const glm::vec4& color) { return color.a < 1; }))
+    primitive.attributes |= vertex_attribute::opacity;
 }
 
 /// All sets of joints and weights, one vertex after the other.
@@ -153,8 +184,12 @@ std::optional<GltfPrimitive> read_primitive(GltfDocument& document, const std::v
     primitive.material = static_cast<std::size_t>(source.material);
   }
   read_normals(document, source, weights, primitive);
-  read_texture_coordinates(document, source, materials[primitive.material].coordinates, primitive);
-  read_color(document, source, primitive);
+  const GltfMaterial& material = materials[primitive.material];
+  for (std::size_t i = 0; i < material.coordinates.size(); ++i)
+    read_texture_coordinates(document, source, material.coordinates[i], primitive, primitive.texture_coordinates[i]);
+  if (material.coordinates[1] >= 0) primitive.attributes |= vertex_attribute::texture_coordinates;
+  read_tangents(document, source, weights, material, primitive);
+  read_colors(document, source, material, primitive);
   read_joints(document, source, primitive);
 
   std::vector<std::uint32_t> corners;

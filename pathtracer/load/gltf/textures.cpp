@@ -109,7 +109,7 @@ void set_transform(GltfDocument& document, GpuTexture& texture, const tinygltf::
 
 std::uint32_t add_gltf_texture(GltfDocument& document, Scene& scene, GltfTextures& textures, int index,
                                const tinygltf::ExtensionMap& extensions, TextureEncoding encoding,
-                               std::uint32_t channel, std::string_view owner) {
+                               std::uint32_t channel, std::uint32_t coordinates, std::string_view owner) {
   const tinygltf::Texture& source = gltf_at(document, document.model.textures, index, "texture", owner);
   const std::string name = gltf_name("texture", static_cast<std::size_t>(index), source.name);
   if (source.source < 0) {
@@ -118,6 +118,7 @@ std::uint32_t add_gltf_texture(GltfDocument& document, Scene& scene, GltfTexture
   }
   Texture texture;
   texture.gpu.channel = channel;
+  texture.gpu.coordinates = coordinates;
   const std::optional<std::uint32_t> image = load_image(document, scene, textures, source.source, encoding, name);
   if (!image) return no_texture;
   texture.image = *image;
@@ -126,11 +127,9 @@ std::uint32_t add_gltf_texture(GltfDocument& document, Scene& scene, GltfTexture
     set_transform(document, texture.gpu, *transform, owner);
 
   const GpuTexture& gpu = texture.gpu;
-  const GltfTextures::View view{texture.image,
-                                channel,
-                                gpu.address,
-                                gpu.filter,
-                                {gpu.u_row.x, gpu.u_row.y, gpu.u_row.z, gpu.v_row.x, gpu.v_row.y, gpu.v_row.z}};
+  const GltfTextures::View view{
+      texture.image, channel,    coordinates,
+      gpu.address,   gpu.filter, {gpu.u_row.x, gpu.u_row.y, gpu.u_row.z, gpu.v_row.x, gpu.v_row.y, gpu.v_row.z}};
   const auto [entry, is_new] = textures.views.try_emplace(view, static_cast<std::uint32_t>(scene.textures.size()));
   if (is_new) scene.textures.push_back(texture);
   return entry->second;

@@ -62,7 +62,9 @@ struct Reading {
   WavefrontText* text = nullptr;
   Scene scene;  ///< its name, materials, textures and warnings
   std::vector<glm::vec3> positions;
-  glm::dvec3 read_position{0};  ///< of the vertex that is being read, as exactly as the file has it
+  std::vector<glm::vec3> colors;        ///< of the positions up to the last that has one, linear
+  glm::dvec3 read_position{0};          ///< of the vertex that is being read, as exactly as the file has it
+  std::optional<glm::vec3> read_color;  ///< likewise
   std::map<std::size_t, UnusableVertex> unusable_positions;  ///< by index
   std::vector<glm::vec3> normals;
   std::vector<glm::vec2> texture_coordinates;
@@ -93,6 +95,7 @@ std::string usable_position(Reading& reading, std::string_view text, const State
                         largest_coordinate);
     reading.read_position[axis] = value;
   }
+  reading.read_color = parse_vertex_color(rest);
   if (why.empty()) return std::string(text);
   reading.unusable_positions.emplace(reading.positions.size(), UnusableVertex{reading.text->line(), why});
   return "v 0 0 0";
@@ -182,6 +185,9 @@ void parse(Reading& reading) {
       reading.positions.emplace_back(x, y, z);
     else
       reading.positions.emplace_back(reading.read_position - reading.scene.origin);
+    if (!reading.read_color) return;
+    reading.colors.resize(reading.positions.size(), glm::vec3(1));
+    reading.colors.back() = *reading.read_color;
   };
   callbacks.normal_cb = [](void* data, float x, float y, float z) {
     static_cast<Reading*>(data)->normals.emplace_back(x, y, z);
@@ -324,6 +330,10 @@ std::size_t assemble(Reading& reading) {
       if (is_new) {
         scene.positions.push_back(reading.positions[source.positions[corner]]);
         scene.normals.push_back(smooth ? reading.normals[normal] : glm::vec3(0, 0, 1));
+        if (source.positions[corner] < reading.colors.size()) {
+          scene.attributes.resize(scene.positions.size());
+          scene.attributes.back().color = reading.colors[source.positions[corner]];
+        }
         if (!scene.textures.empty())
           scene.texture_coordinates.push_back(
               texture_coordinate == none ? glm::vec2(0) : reading.texture_coordinates[texture_coordinate]);
@@ -331,7 +341,13 @@ std::size_t assemble(Reading& reading) {
       triangle.vertices[corner] = entry->second;
     }
     scene.triangles.push_back(triangle);
+    const auto is_colored = [&](std::uint32_t position) {
+      return position < reading.colors.size() && reading.colors[position] != glm::vec3(1);
+    };
+    if (std::ranges::any_of(source.positions, is_colored))
+      scene.materials[source.material].attributes |= vertex_attribute::color;
   }
+  if (!scene.attributes.empty()) scene.attributes.resize(scene.positions.size());
   return lacking;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "base/printable.hpp"
+#include "base/srgb.hpp"
 #include "base/text_file.hpp"
 
 namespace tandem::pathtracer {
@@ -111,6 +113,16 @@ std::string abbreviated(std::span<const std::string> names) {
   for (const std::string& name : names.first(std::min(names.size(), most))) shown.push_back(shortened(name));
   const std::string more = names.size() > most ? fmt::format(" and {} more", names.size() - most) : std::string();
   return fmt::format("{}{}", fmt::join(shown, ", "), more);
+}
+
+std::optional<glm::vec3> parse_vertex_color(std::string_view rest) {
+  glm::vec3 color(0);
+  for (int channel = 0; channel < 3; ++channel) {
+    double value = 0;
+    if (!parse_number(take_word(rest), value) || !std::isfinite(value)) return std::nullopt;
+    color[channel] = srgb_decode(static_cast<float>(std::clamp(value, 0.0, 1.0)));
+  }
+  return color;
 }
 
 }  // namespace tandem::pathtracer

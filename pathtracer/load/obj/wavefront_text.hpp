@@ -4,10 +4,13 @@
 #include <filesystem>
 #include <functional>
 #include <istream>
+#include <optional>
 #include <span>
 #include <streambuf>
 #include <string>
 #include <string_view>
+
+#include <glm/vec3.hpp>
 
 #include "base/error.hpp"
 
@@ -69,5 +72,9 @@ bool parse_integer(std::string_view word, int& value);
 
 /// "a, b, c, d and 5 more", as names are shown in sentences.
 std::string abbreviated(std::span<const std::string> names);
+
+/// The three numbers behind the coordinates of a vertex, as Blender and MeshLab write colours, encoded as sRGB in [0,
+/// 1]. Returns the linear colour, or nothing where there are fewer.
+std::optional<glm::vec3> parse_vertex_color(std::string_view rest);
 
 }  // namespace tandem::pathtracer

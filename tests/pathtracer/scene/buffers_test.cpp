@@ -63,7 +63,8 @@ TEST_CASE("The shaders bind each buffer of a scene where the host does") {
                                                          {"Spheres", binding::spheres},
                                                          {"EnvironmentCells", binding::environment_cells},
                                                          {"Media", binding::media},
-                                                         {"Render", binding::render}};
+                                                         {"Render", binding::render},
+                                                         {"Attributes", binding::attributes}};
   std::map<std::string, std::uint32_t> declared;
   const auto reflection = tandem::rhi::reflect(tandem::shaders::path_trace(), "path_trace.comp");
   for (const tandem::rhi::ShaderBinding& found : reflection.bindings)
@@ -173,9 +174,9 @@ TEST_CASE("The structures of the shader's buffers are those of the host") {
                 {"bump_texture", offsetof(GpuMaterial, bump_texture)},
                 {"medium", offsetof(GpuMaterial, medium)},
                 {"alpha_cutoff", offsetof(GpuMaterial, alpha_cutoff)},
-                {"reserved_0", offsetof(GpuMaterial, reserved) + 0},
-                {"reserved_1", offsetof(GpuMaterial, reserved) + 4},
-                {"reserved_2", offsetof(GpuMaterial, reserved) + 8}});
+                {"attributes", offsetof(GpuMaterial, attributes)},
+                {"reserved_1", offsetof(GpuMaterial, reserved) + 0},
+                {"reserved_2", offsetof(GpuMaterial, reserved) + 4}});
   CHECK(elements.at(binding::lights).stride == sizeof(GpuLight));
   CHECK(elements.at(binding::lights).offsets == Offsets{{"primitive", offsetof(GpuLight, primitive)},
                                                         {"alias", offsetof(GpuLight, alias)},
@@ -203,11 +204,18 @@ TEST_CASE("The structures of the shader's buffers are those of the host") {
                                                           {"u_row", offsetof(GpuTexture, u_row)},
                                                           {"scale", offsetof(GpuTexture, scale)},
                                                           {"v_row", offsetof(GpuTexture, v_row)},
-                                                          {"reserved", offsetof(GpuTexture, reserved)},
+                                                          {"coordinates", offsetof(GpuTexture, coordinates)},
                                                           {"color_a", offsetof(GpuTexture, color_a)},
                                                           {"alpha_a", offsetof(GpuTexture, alpha_a)},
                                                           {"color_b", offsetof(GpuTexture, color_b)},
                                                           {"alpha_b", offsetof(GpuTexture, alpha_b)}});
+  CHECK(elements.at(binding::attributes).stride == sizeof(GpuVertexAttributes));
+  CHECK(elements.at(binding::attributes).offsets ==
+        Offsets{{"tangent", offsetof(GpuVertexAttributes, tangent)},
+                {"color", offsetof(GpuVertexAttributes, color)},
+                {"opacity", offsetof(GpuVertexAttributes, opacity)},
+                {"texture_coordinates", offsetof(GpuVertexAttributes, texture_coordinates)},
+                {"reserved", offsetof(GpuVertexAttributes, reserved)}});
   CHECK(elements.at(binding::spheres).stride == sizeof(GpuSphere));
   CHECK(elements.at(binding::spheres).offsets == Offsets{{"centre", offsetof(GpuSphere, centre)},
                                                          {"radius", offsetof(GpuSphere, radius)},

@@ -167,7 +167,7 @@ TEST_CASE("glTF: KHR_texture_transform scales, then turns, then shifts") {
   check_near(read_at(all, {0, 1}), {0.5f + 3 * s, 0.25f + 3 * c});
 }
 
-TEST_CASE("glTF: one set of texture coordinates is carried, the one that the textures use") {
+TEST_CASE("glTF: two sets of texture coordinates are carried, those that the textures use") {
   GltfFile file;
   const int positions = file.add_vectors({0, 0, 0, 1, 0, 0, 0, 1, 0});
   const int first = file.add_vectors({0, 0, 1, 0, 0, 1}, "VEC2");
@@ -182,11 +182,26 @@ TEST_CASE("glTF: one set of texture coordinates is carried, the one that the tex
   CHECK(file.load().texture_coordinates[0] == glm::vec2(0.5f, 1));
   CHECK(file.load().warnings.empty());
 
+  CHECK(file.load().attributes.empty());
+
   file.json["materials"][0]["normalTexture"] = {{"index", 0}};
   const Scene mixed = file.load();
-  REQUIRE(mixed.warnings.size() == 1);
-  CHECK(contains(mixed.warnings[0], "the normal texture has no effect"));
-  CHECK(mixed.materials[0].normal_texture == no_texture);
+  CHECK(mixed.warnings.empty());
+  const GpuMaterial& material = mixed.materials[mixed.triangles[0].material];
+  CHECK(material.attributes == vertex_attribute::texture_coordinates);
+  // The emissive texture is read before the normal one.
+  CHECK(mixed.textures[material.emission_texture].gpu.coordinates == 0);
+  CHECK(mixed.textures[material.normal_texture].gpu.coordinates == 1);
+  const std::uint32_t vertex = mixed.triangles[0].vertices[0];
+  CHECK(mixed.texture_coordinates[vertex] == glm::vec2(0.5f, 1));
+  CHECK(mixed.attributes[vertex].texture_coordinates == glm::vec2(0, 1));
+
+  file.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}, {"texCoord", 2}};
+  file.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_2"] = first;
+  const Scene third = file.load();
+  REQUIRE(third.warnings.size() == 1);
+  CHECK(contains(third.warnings[0], "has no effect, because it uses TEXCOORD_"));
+  file.json["materials"][0].erase("pbrMetallicRoughness");
 
   // The transform may name another set.
   file.json["materials"][0]["normalTexture"] = extension("KHR_texture_transform", {{"texCoord", 1}});

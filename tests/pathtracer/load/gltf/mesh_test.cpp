@@ -176,7 +176,7 @@ TEST_CASE("glTF: triangles are smooth where their normals differ from their own"
   }
 }
 
-TEST_CASE("glTF: a colour that all vertices share multiplies the material's; one that varies is a warning") {
+TEST_CASE("glTF: a colour that all vertices share multiplies the material's; one that varies stays with the vertices") {
   GltfFile file;
   file.json["materials"] = {{{"name", "paint"},
                              {"alphaMode", "BLEND"},
@@ -199,11 +199,56 @@ TEST_CASE("glTF: a colour that all vertices share multiplies the material's; one
   CHECK(constant.materials[2].base_color == glm::vec3(1, 0, 0));
   CHECK(constant.material_names == std::vector<std::string>{"paint", "paint", "paint"});
 
+  CHECK(constant.attributes.empty());
+
   for (int repetition = 0; repetition < 2; ++repetition) add(file.add_vectors({1, 1, 1, 1, 1, 1, 1, 1, 0}));
+  add(file.add_vectors({1, 1, 1, 1, 1, 1, 1, 0.5f, 0, 1, 1, 1}, "VEC4"));
   const Scene varying = file.load();
-  REQUIRE(varying.warnings.size() == 1);
-  CHECK(contains(varying.warnings[0], "COLOR_0"));
-  CHECK(varying.materials.size() == 3);
+  CHECK(varying.warnings.empty());
+  REQUIRE(varying.materials.size() == 5);
+  CHECK(varying.materials[0].attributes == 0);
+  CHECK(varying.materials[3].attributes == vertex_attribute::color);
+  CHECK(varying.materials[3].base_color == glm::vec3(1, 0.5f, 0.25f));
+  CHECK(varying.materials[4].attributes == (vertex_attribute::color | vertex_attribute::opacity));
+  CHECK(is_transparent(varying.materials[4]));
+  REQUIRE(varying.attributes.size() == varying.positions.size());
+  const GpuTriangle& last = varying.triangles.back();
+  CHECK(varying.attributes[last.vertices[1]].color == glm::vec3(1, 1, 1));
+  CHECK(varying.attributes[last.vertices[1]].opacity == 0.5f);
+  CHECK(varying.attributes[last.vertices[2]].color == glm::vec3(0, 1, 1));
+  CHECK(varying.attributes[varying.triangles[0].vertices[2]].color == glm::vec3(1));
+
+  // Alpha counts where the material says so; an unlit material shows its colour by emitting it.
+  file.json["materials"][0].erase("alphaMode");
+  CHECK(file.load().materials.back().attributes == vertex_attribute::color);
+  file.json["materials"][0]["extensions"] = {{"KHR_materials_unlit", nlohmann::json::object()}};
+  CHECK(file.load().materials.back().attributes == (vertex_attribute::color | vertex_attribute::emission));
+}
+
+TEST_CASE("glTF: tangents that are given go with a normal map, and turn with their node") {
+  GltfFile file;
+  const auto attributes = nlohmann::json{{"POSITION", file.add_vectors({0, 0, 0, 1, 0, 0, 0, 1, 0})},
+                                         {"NORMAL", file.add_vectors({0, 0, 1, 0, 0, 1, 0, 0, 1})},
+                                         {"TEXCOORD_0", file.add_vectors({0, 0, 1, 0, 0, 1}, "VEC2")},
+                                         {"TANGENT", file.add_vectors({0, 2, 0, 1, 0, 2, 0, 1, 0, 2, 0, 1}, "VEC4")}};
+  file.json["images"] = {{{"uri", data_uri("image/png", png(1, 1, {9, 9, 9, 9}))}}};
+  file.json["textures"] = {{{"source", 0}}};
+  file.json["materials"] = {{{"normalTexture", {{"index", 0}}}}};
+  // A quarter turn about z and a mirror of x.
+  const int node = file.add_node({{"mesh", file.add_mesh({{"material", 0}, {"attributes", attributes}})}});
+  const auto tangent = [&](const nlohmann::json& matrix) {
+    file.json["nodes"][static_cast<std::size_t>(node)]["matrix"] = matrix;
+    const Scene scene = file.load();
+    CHECK(scene.warnings.empty());
+    CHECK(scene.materials[scene.triangles[0].material & ~triangle_smooth].attributes == vertex_attribute::tangent);
+    return scene.attributes[scene.triangles[0].vertices[0]].tangent;
+  };
+  CHECK(tangent({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}) == glm::vec4(0, 1, 0, 1));
+  CHECK(tangent({0, 3, 0, 0, -3, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1}) == glm::vec4(-1, 0, 0, 1));
+  CHECK(tangent({-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}) == glm::vec4(0, 1, 0, -1));
+  // Without a normal map they mean nothing, and without normals they are to be ignored.
+  file.json["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL");
+  CHECK(file.load().attributes.empty());
 }
 
 TEST_CASE("glTF: what is not drawn is one warning each") {

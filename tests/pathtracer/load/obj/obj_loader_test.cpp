@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "base/error.hpp"
+#include "base/srgb.hpp"
 #include "tests/support/scratch_folder.hpp"
 
 using namespace tandem::pathtracer;
@@ -275,4 +276,18 @@ TEST_CASE("A polygon of many corners is read, and names in sentences are escaped
   const std::string sentence = error_of(square + "f 1 2 " + std::string(100000, 'x') + "\x1b\n");
   CHECK(sentence.size() < 400);
   CHECK(contains(sentence, "\\x1b' is not a corner"));
+}
+
+TEST_CASE("OBJ: colours behind the coordinates are factors on the base colour, encoded as sRGB") {
+  const Scene colored = load("v 0 0 0 1 0 0\nv 1 0 0 0 1 0.5\nv 0 1 0\nf 1 2 3\n");
+  CHECK(colored.warnings.empty());
+  CHECK(colored.materials[0].attributes == vertex_attribute::color);
+  REQUIRE(colored.attributes.size() == 3);
+  CHECK(colored.attributes[0].color == glm::vec3(1, 0, 0));
+  CHECK(colored.attributes[1].color == glm::vec3(0, 1, tandem::srgb_decode(0.5f)));
+  CHECK(colored.attributes[2].color == glm::vec3(1));
+  CHECK(colored.positions[1] == glm::vec3(1, 0, 0));
+  // A weight is none, and white changes nothing.
+  CHECK(load("v 0 0 0 1\nv 1 0 0 0.5\nv 0 1 0\nf 1 2 3\n").materials[0].attributes == 0);
+  CHECK(load("v 0 0 0 1 1 1\nv 1 0 0 1 1 1\nv 0 1 0 1 1 1\nf 1 2 3\n").materials[0].attributes == 0);
 }
