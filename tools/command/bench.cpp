@@ -35,6 +35,7 @@ int measure_speed(const Options& options) {
   std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
   for (const std::string& name : options.devices) {
     const rhi::DeviceHandle device = open_device(name, options.render);
+    const ShownStage stage(building_stage);
     renderers.push_back(std::make_unique<pathtracer::Renderer>(device, job.scene, job.settings, options.render.trace));
     report.series.push_back({.device = device->info(),
                              .trace = renderers.back()->scene().trace(),

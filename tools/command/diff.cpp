@@ -174,7 +174,10 @@ int diff(const Options& options) {
   compare::Job job = load_job(options.render);
   compare::ComparisonOptions wanted = comparison_options(options.comparison, options.render);
   if (!options.report.empty()) wanted = with_metrics_for_page(wanted);
-  compare::Session session = prepare(open_devices(options.comparison, options.render), std::move(job), wanted);
+  compare::ComparedDevices devices = open_devices(options.comparison, options.render);
+  std::optional<ShownStage> stage(building_stage);
+  compare::Session session = prepare(std::move(devices), std::move(job), wanted);
+  stage.reset();
   if (baseline) {
     if (wanted.thresholds.tier == compare::Tier::statistical)
       throw Error("--baseline cannot be combined with --tier statistical: its images have other samples");

@@ -43,6 +43,7 @@ int compare_matrix(const Options& options) {
   std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
   for (const std::string& name : options.devices) {
     devices.push_back(open_device(name, options.render));
+    const ShownStage stage(building_stage);
     renderers.push_back(
         std::make_unique<pathtracer::Renderer>(devices.back(), job.scene, job.settings, options.render.trace));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -57,7 +58,9 @@ int render_image(const Options& options) {
     throw Error(fmt::format("--aovs: '{}' is not an .exr; only .exr files hold AOVs", options.output.string()));
   const compare::Job job = load_job(options.render);
   const rhi::DeviceHandle device = open_device(options.device, options.render);
+  std::optional<ShownStage> stage(building_stage);
   pathtracer::Renderer renderer(device, job.scene, job.settings, options.render.trace);
+  stage.reset();
   const compare::Rendering rendering = compare::render(renderer, job.samples, progress_bars());
   print_warnings(rendering.warnings);
   const auto is_finite = [](const glm::vec3& pixel) {

@@ -14,6 +14,7 @@
 #include "pathtracer/scene/panes.hpp"
 #include "pathtracer/scene/studio.hpp"
 #include "tools/output/messages.hpp"
+#include "tools/output/progress_bar.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -86,9 +87,11 @@ void light_up(pathtracer::Scene& scene, bool is_description) {
 
 compare::Job load_job(const RenderOptions& options) {
   compare::Job job;
+  std::optional<ShownStage> stage("loading " + options.scene.filename().string());
   job.file = options.scene;
   job.scene = pathtracer::load_scene(options.scene, {.allow_missing_mtl = options.allow_missing_mtl,
                                                      .allow_outside_files = options.allow_outside_files});
+  stage.reset();
   print_warnings(job.scene.warnings);
   say_origin(job.scene);
   treat_open_glass(job.scene, options.thin_panes);

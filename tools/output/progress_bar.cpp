@@ -11,6 +11,7 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "base/printable.hpp"
 #include "tools/output/interruption.hpp"
@@ -115,6 +116,9 @@ ProgressBar::ProgressBar() : display_(std::make_unique<Display>()) {}
 ProgressBar::~ProgressBar() = default;
 
 void ProgressBar::show(std::string_view stage, double fraction) { display_->show(stage, fraction); }
+
+ShownStage::ShownStage(std::string stage) : stage_(std::move(stage)) { bar_.show(stage_, 0); }
+ShownStage::~ShownStage() { bar_.show(stage_, 1); }
 
 StageProgress progress_bars() {
   return [bar = std::make_shared<ProgressBar>()](std::string_view stage, double fraction) {

@@ -27,6 +27,21 @@ class ProgressBar {
   std::unique_ptr<Display> display_;
 };
 
+/// Shows, while it lives, a stage that does not say how far it is.
+class ShownStage {
+ public:
+  explicit ShownStage(std::string stage);
+  ~ShownStage();
+  ShownStage(const ShownStage&) = delete;
+  ShownStage& operator=(const ShownStage&) = delete;
+
+ private:
+  std::string stage_;
+  ProgressBar bar_;
+};
+
+inline constexpr const char* building_stage = "building acceleration structures";
+
 /// Progress as a bar for each stage. Cancels when the user has interrupted the program.
 StageProgress progress_bars();
 /// The same for work of one stage.

@@ -101,7 +101,9 @@ SuiteResult SuiteRun::try_run(const SuiteCell& cell, compare::Comparison& compar
   if (!fresh_)
     if (std::optional<Json> earlier = read_result(folder_, cell_path(cell, ".json"), key))
       return {.json = std::move(*earlier), .reused = true};
+  std::optional<ShownStage> stage(building_stage);
   compare::Session session = prepare(std::move(devices), std::move(job), options);
+  stage.reset();
   comparison = compare_devices(session, progress_bars());
   Json report = to_json(comparison);
   report["date"] = date_text();
