@@ -235,7 +235,7 @@ struct RenderConstants {
   vec3 environment_right;    // the directions that the map's centre has to its right, above and before it; orthonormal
   float shutter;             // 1: spheres or the camera move, 0: all stands still
   vec3 environment_up;
-  float reserved_0;
+  uint terminator_offset;    // 1: rays leave smooth triangles from the round surface that their normals mean
   vec3 environment_forward;
   float reserved_1;
 };

@@ -66,6 +66,7 @@ RenderSettings render_settings(const SceneSettings& given) {
   take(settings.clamp_direct, given.clamp_direct);
   take(settings.clamp_indirect, given.clamp_indirect);
   take(settings.occlusion_length, given.occlusion_length);
+  take(settings.terminator_offset, given.terminator_offset);
   return settings;
 }
 
@@ -75,7 +76,8 @@ Features features_of(const RenderSettings& settings) {
   const bool is_usual = settings.integrator == Integrator::path && settings.light_sampling &&
                         settings.mis == Mis::power && settings.bsdf_sampling == BsdfSampling::bsdf &&
                         settings.roulette && !settings.max_diffuse_depth && !settings.max_glossy_depth &&
-                        !settings.max_specular_depth && settings.clamp_direct == 0 && settings.clamp_indirect == 0;
+                        !settings.max_specular_depth && settings.clamp_direct == 0 && settings.clamp_indirect == 0 &&
+                        !settings.terminator_offset;
   if (!is_usual) features |= feature::options;
   if (settings.camera && (settings.camera->kind != CameraKind::perspective || settings.camera->lens_radius != 0 ||
                           settings.camera->motion != glm::vec3(0)))
@@ -100,6 +102,7 @@ void set_options(RenderConstants& constants, const RenderSettings& settings) {
   constants.clamp_direct = settings.clamp_direct;
   constants.clamp_indirect = settings.clamp_indirect;
   constants.occlusion_length = settings.occlusion_length;
+  constants.terminator_offset = settings.terminator_offset ? 1 : 0;
 }
 
 }  // namespace tandem::pathtracer

@@ -38,6 +38,9 @@ struct RenderSettings {
   float clamp_direct = 0;  ///< largest channel that one sample adds at its first vertex; 0: no bound
   float clamp_indirect = 0;
   float occlusion_length = 1e30f;  ///< of the rays of ambient occlusion, in units of the scene
+  /// Rays leave smooth triangles from the round surface that their normals mean, so that the border of a shadow does
+  /// not follow the faces. Light may then come through meshes that are not closed (docs/decisions/0020).
+  bool terminator_offset = false;
 
   /// Of the shaders, beyond those that scene and settings need: they cost time and change no bit of the picture.
   Features further_features = 0;

@@ -236,7 +236,7 @@ struct RenderConstants {
   glm::vec3 environment_right{1, 0, 0};
   float shutter = 0;
   glm::vec3 environment_up{0, 1, 0};
-  float reserved_0 = 0;
+  std::uint32_t terminator_offset = 0;
   glm::vec3 environment_forward{0, 0, -1};
   float reserved_1 = 0;
 };

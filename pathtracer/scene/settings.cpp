@@ -25,6 +25,7 @@ SceneSettings merged(const SceneSettings& first, const SceneSettings& second) {
   fill(result.clamp_direct, second.clamp_direct);
   fill(result.clamp_indirect, second.clamp_indirect);
   fill(result.occlusion_length, second.occlusion_length);
+  fill(result.terminator_offset, second.terminator_offset);
   return result;
 }
 

@@ -32,6 +32,7 @@ struct SceneSettings {
   std::optional<float> clamp_direct;
   std::optional<float> clamp_indirect;
   std::optional<float> occlusion_length;
+  std::optional<bool> terminator_offset;
 };
 
 /// The members of `first`, and those of `second` where it has none.

@@ -88,6 +88,8 @@ struct Surface {
   vec3 position;
   vec3 geometric_normal;  // unit, on the side from which the ray came
   vec3 shading_normal;    // unit, likewise
+  vec3 departure;         // where rays leave from: the position, or above it on the smooth surface that the normals mean
+  vec3 side_normal;       // unit: the side that reflected light goes to; the geometric normal, or that of the smooth surface
   float offset;           // offset_distance of the position
   bool outside;           // the ray came from the side of a triangle's own (counter-clockwise) normal, or from out of a sphere
   uint material;
@@ -95,6 +97,39 @@ struct Surface {
   vec4 texture_coordinates;  // both sets
   vec3 tint;                 // factor on the base colour
 };
+
+/// Whether the other side matters to rays that leave the surface.
+bool lets_through(uint material) {
+  uint model = materials[material].model;
+  return model == MATERIAL_DIELECTRIC || model == MATERIAL_ROUGH_DIELECTRIC || model == MATERIAL_THIN ||
+         model == MATERIAL_BOUNDARY || (model == MATERIAL_PRINCIPLED && materials[material].transmission > 0.0);
+}
+
+// Normals that lean farther from their triangle (cosine of 30 degrees) do not mean that it is round.
+const float LEAST_ROUND_COSINE = 0.8660254;
+
+/// From a point of a triangle to the smooth surface that its vertices' normals mean: the point is projected onto the
+/// plane of each vertex that lies above it, and the projections are interpolated (Hanika, Hacking the Shadow Terminator,
+/// Ray Tracing Gems II, chapter 4, 2021). 0 where the surface is hollow or the normals mean none.
+/// @param turn -1 where the normals are to be turned round to face `normal`, else 1
+precise vec3 smooth_rise(uvec3 vertices, TriangleVertices triangle, vec2 barycentrics, vec3 position, vec3 normal,
+                         float turn) {
+  vec3 a = vertex_normal(vertices.x) * turn;
+  vec3 b = vertex_normal(vertices.y) * turn;
+  vec3 c = vertex_normal(vertices.z) * turn;
+  precise float cosine_a = det_dot(a, normal);
+  precise float cosine_b = det_dot(b, normal);
+  precise float cosine_c = det_dot(c, normal);
+  if (!(cosine_a > LEAST_ROUND_COSINE && cosine_b > LEAST_ROUND_COSINE && cosine_c > LEAST_ROUND_COSINE))
+    return vec3(0.0);
+  precise float below_a = det_dot(triangle.a - position, a);
+  precise float below_b = det_dot(triangle.b - position, b);
+  precise float below_c = det_dot(triangle.c - position, c);
+  float rise_a = below_a > 0.0 ? below_a * ((1.0 - barycentrics.x) - barycentrics.y) : 0.0;
+  float rise_b = below_b > 0.0 ? below_b * barycentrics.x : 0.0;
+  float rise_c = below_c > 0.0 ? below_c * barycentrics.y : 0.0;
+  return (a * rise_a + b * rise_b) + c * rise_c;
+}
 
 /// surface_at for a sphere, without its normal map.
 precise Surface sphere_surface(uint sphere_index, vec3 origin, vec3 direction, float time,
@@ -111,6 +146,8 @@ precise Surface sphere_surface(uint sphere_index, vec3 origin, vec3 direction, f
   surface.outside = det_dot(normal, direction) <= 0.0;
   surface.geometric_normal = surface.outside ? normal : -normal;
   surface.shading_normal = surface.geometric_normal;
+  surface.side_normal = surface.geometric_normal;
+  surface.departure = surface.position;
   surface.offset = sphere_offset(centre, radius, normal);
   surface.texture_coordinates = FEATURE_TEXTURES ? both_sets(sphere_texture_coordinates(normal)) : vec4(0.0);
   surface.tint = vec3(1.0);
@@ -133,6 +170,8 @@ precise Surface triangle_surface(uint primitive, vec3 origin, vec3 direction, ou
   surface.outside = det_dot(normal, direction) <= 0.0;
   surface.geometric_normal = surface.outside ? normal : -normal;
   surface.shading_normal = surface.geometric_normal;
+  surface.side_normal = surface.geometric_normal;
+  surface.departure = surface.position;
   surface.offset = offset_distance(surface.position, normal, triangle_extent(triangle));
 
   surface.texture_coordinates =
@@ -144,9 +183,22 @@ precise Surface triangle_surface(uint primitive, vec3 origin, vec3 direction, ou
                                  vertex_normal(vertices.y) * barycentrics.x) +
                                 vertex_normal(vertices.z) * barycentrics.y;
     precise vec3 smooth_normal = det_normalize(interpolated, surface.geometric_normal);
-    if (det_dot(smooth_normal, surface.geometric_normal) < 0.0) smooth_normal = -smooth_normal;
+    bool turned = det_dot(smooth_normal, surface.geometric_normal) < 0.0;
+    if (turned) smooth_normal = -smooth_normal;
     // Seen from behind an interpolated normal means nothing: near silhouettes the geometric one takes over.
-    if (det_dot(smooth_normal, direction) < 0.0) surface.shading_normal = smooth_normal;
+    if (det_dot(smooth_normal, direction) < 0.0) {
+      surface.shading_normal = smooth_normal;
+      if (FEATURE_OPTIONS && render.terminator_offset != 0 && !lets_through(surface.material)) {
+        vec3 rise = smooth_rise(vertices, triangle, barycentrics, surface.position, surface.geometric_normal,
+                                turned ? -1.0 : 1.0);
+        // Well above what offset_point takes back for directions below the triangle's plane.
+        precise float height = det_dot(rise, surface.geometric_normal);
+        if (height > 4.0 * surface.offset) {
+          surface.departure = surface.position + rise;
+          surface.side_normal = smooth_normal;
+        }
+      }
+    }
   }
   derivatives.by_u = vec3(0.0);
   derivatives.by_v = vec3(0.0);

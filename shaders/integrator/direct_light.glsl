@@ -14,7 +14,7 @@
 /// weighted against the sampling of the BSDF. `medium`: around the vertex. `segment`: the one that ends there.
 precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key, uint segment, inout uint ray_count) {
   Surface surface = vertex.surface;
-  LightSample light = sample_light(surface.position, sampler_bits(key, light_dimension(segment)), time);
+  LightSample light = sample_light(surface.departure, sampler_bits(key, light_dimension(segment)), time);
   TANDEM_RECORD(event_light_sample(sampler_bits(key, light_dimension(segment)), light.primitive, light.infinite,
                                    light.direction, light.radiance, light.density, light.target);)
   if (light.primitive != NO_PRIMITIVE && light.primitive == vertex.primitive) return vec3(0.0);
@@ -30,13 +30,13 @@ precise vec3 direct_light(Vertex vertex, uint medium, float time, RandomKey key,
   TANDEM_RECORD(event_light_value(value, found.density, weight);)
   if (!(weight > 0.0 && weight < 1e30)) return vec3(0.0);
 
-  precise vec3 from = offset_point(surface.position, surface.geometric_normal, surface.offset, light.direction);
+  precise vec3 from = offset_point(surface.departure, surface.geometric_normal, surface.offset, light.direction);
   precise vec3 direction = light.direction;
   if (!light.infinite) {
     direction = offset_point(light.target, light.target_normal, light.target_offset, -light.direction) - from;
     if (direction == vec3(0.0)) return vec3(0.0);
   }
-  precise float side = det_dot(light.direction, surface.geometric_normal);
+  precise float side = det_dot(light.direction, surface.side_normal);
   bool transmits = side < 0.0;
   precise vec3 visible = visibility(from, direction, light.infinite ? RAY_LENGTH : 1.0,
                                     medium_after(vertex, medium, transmits), time, key, shadow_dimension(segment),

@@ -121,6 +121,8 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
         vertex.surface.position = origin + direction * reached.distance;
         vertex.surface.geometric_normal = direction;
         vertex.surface.shading_normal = direction;
+        vertex.surface.departure = vertex.surface.position;
+        vertex.surface.side_normal = direction;
         vertex.surface.offset = 0.0;
         vertex.anisotropy = media[medium].anisotropy;
         vertex.has_density = true;
@@ -224,9 +226,9 @@ precise vec3 path_radiance(uvec2 pixel, uint sample_index, inout uint ray_count)
     }
     medium = medium_after(vertex, medium, (scattered.lobe & LOBE_TRANSMISSION) != 0);
     count_scattering(scattering_count, scattered.lobe);
-    scatterer.position = vertex.surface.position;
+    scatterer.position = vertex.surface.departure;
     scatterer.density = estimates_lights ? scattered.density : 0.0;
-    origin = offset_point(vertex.surface.position, vertex.surface.geometric_normal, vertex.surface.offset,
+    origin = offset_point(vertex.surface.departure, vertex.surface.geometric_normal, vertex.surface.offset,
                           next_direction);
     direction = next_direction;
     TANDEM_RECORD(end_reason = END_DEPTH;)

@@ -34,10 +34,10 @@ precise BsdfValue vertex_value(Vertex vertex, vec3 wi) {
   return found;
 }
 
-/// Whether a scattered direction is on the side of the true surface that wi.z says of the shading frame. Interpolated
+/// Whether a scattered direction is on the side of the surface (side_normal) that wi.z says of the shading frame. Interpolated
 /// and mapped normals can send it to the other.
 bool on_its_side(Surface surface, vec3 direction, float wi_z) {
-  precise float agreement = det_dot(direction, surface.geometric_normal) * wi_z;
+  precise float agreement = det_dot(direction, surface.side_normal) * wi_z;
   return agreement > 0.0;
 }
 
@@ -46,12 +46,12 @@ bool on_its_side(Surface surface, vec3 direction, float wi_z) {
 bool folds(Vertex vertex) {
   if (!FEATURE_MATERIALS || vertex.in_medium || !vertex.has_density) return false;
   if (vertex.parameters.model == MATERIAL_DIFFUSE || vertex.parameters.model == MATERIAL_OREN_NAYAR) return false;
-  return vertex.surface.shading_normal != vertex.surface.geometric_normal;
+  return vertex.surface.shading_normal != vertex.surface.side_normal;
 }
 
 /// A direction mirrored at the true surface.
 precise vec3 folded(Surface surface, vec3 direction) {
-  return direction - surface.geometric_normal * (2.0 * det_dot(direction, surface.geometric_normal));
+  return direction - surface.side_normal * (2.0 * det_dot(direction, surface.side_normal));
 }
 
 /// Whether the glossy lobes send light to `direction` by way of its mirror image.

@@ -28,7 +28,8 @@ TEST_CASE("every command explains itself and all its options") {
   const std::string image =
       " --size --spp --depth --seed --camera --camera-position --camera-target --fov --view-height --lens-radius "
       "--focus-distance --background --integrator --sampler --nee --mis --bsdf-sampling --roulette --max-diffuse-depth "
-      "--max-glossy-depth --max-specular-depth --clamp-direct --clamp-indirect --occlusion-length --threads --trace "
+      "--max-glossy-depth --max-specular-depth --clamp-direct --clamp-indirect --occlusion-length --terminator-offset "
+      "--threads --trace "
       "--validation --allow-missing-mtl --thin-panes";
   const std::string thresholds = " --tier --min-within-1e3 --min-bit-equal --max-mean-difference --max-non-finite";
   const std::map<std::string, std::string> options = {

@@ -87,6 +87,9 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
              "Clamp what a sample adds at later vertices; biased [0: no clamping]");
   add_number(method, "--occlusion-length", settings.occlusion_length, 0.0F, most, "LENGTH",
              "Ambient occlusion: maximum distance of an occluder [unlimited]");
+  add_switch(method, "--terminator-offset", settings.terminator_offset,
+             "Let rays leave smooth triangles from the round surface that their normals mean, against the shadow "
+             "terminator; light may come through meshes that are not closed [off]");
 
   CLI::App& execution = *group("Execution");
   add_whole_number(execution, "--threads", options.threads, 0, most_threads,

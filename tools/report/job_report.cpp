@@ -50,32 +50,36 @@ std::string settings_text(const compare::JobSummary& job) {
   add(settings.clamp_direct != 0, "clamp direct", settings.clamp_direct);
   add(settings.clamp_indirect != 0, "clamp indirect", settings.clamp_indirect);
   add(settings.occlusion_length != usual.occlusion_length, "occlusion length", settings.occlusion_length);
+  add(settings.terminator_offset, "terminator offset", "on");
   return text;
 }
 
 nlohmann::ordered_json to_json(const compare::JobSummary& job) {
   const pathtracer::RenderSettings& settings = job.settings;
-  return {{"scene", job.scene},
-          {"scene_hash", job.scene_hash},
-          {"triangles", job.triangles},
-          {"spheres", job.spheres},
-          {"width", settings.width},
-          {"height", settings.height},
-          {"spp", job.samples},
-          {"depth", settings.max_depth},
-          {"seed", settings.seed},
-          {"integrator", name_of(pathtracer::integrator_names(), settings.integrator)},
-          {"sampler", name_of(pathtracer::sampler_names(), settings.sampler)},
-          {"nee", settings.light_sampling},
-          {"mis", name_of(pathtracer::mis_names(), settings.mis)},
-          {"bsdf_sampling", name_of(pathtracer::bsdf_sampling_names(), settings.bsdf_sampling)},
-          {"roulette", settings.roulette},
-          {"max_diffuse_depth", optional_json(settings.max_diffuse_depth)},
-          {"max_glossy_depth", optional_json(settings.max_glossy_depth)},
-          {"max_specular_depth", optional_json(settings.max_specular_depth)},
-          {"clamp_direct", settings.clamp_direct},
-          {"clamp_indirect", settings.clamp_indirect},
-          {"occlusion_length", settings.occlusion_length}};
+  nlohmann::ordered_json json = {{"scene", job.scene},
+                                 {"scene_hash", job.scene_hash},
+                                 {"triangles", job.triangles},
+                                 {"spheres", job.spheres},
+                                 {"width", settings.width},
+                                 {"height", settings.height},
+                                 {"spp", job.samples},
+                                 {"depth", settings.max_depth},
+                                 {"seed", settings.seed},
+                                 {"integrator", name_of(pathtracer::integrator_names(), settings.integrator)},
+                                 {"sampler", name_of(pathtracer::sampler_names(), settings.sampler)},
+                                 {"nee", settings.light_sampling},
+                                 {"mis", name_of(pathtracer::mis_names(), settings.mis)},
+                                 {"bsdf_sampling", name_of(pathtracer::bsdf_sampling_names(), settings.bsdf_sampling)},
+                                 {"roulette", settings.roulette},
+                                 {"max_diffuse_depth", optional_json(settings.max_diffuse_depth)},
+                                 {"max_glossy_depth", optional_json(settings.max_glossy_depth)},
+                                 {"max_specular_depth", optional_json(settings.max_specular_depth)},
+                                 {"clamp_direct", settings.clamp_direct},
+                                 {"clamp_indirect", settings.clamp_indirect},
+                                 {"occlusion_length", settings.occlusion_length}};
+  // Where it is off, the JSON is that of versions that did not have it.
+  if (settings.terminator_offset) json["terminator_offset"] = true;
+  return json;
 }
 
 nlohmann::ordered_json settings_json(const compare::JobSummary& job, const pathtracer::Camera& camera,

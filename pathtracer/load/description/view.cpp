@@ -66,7 +66,7 @@ SceneSettings read_settings(const Value& value) {
   const Object object(value,
                       {"width", "height", "spp", "depth", "seed", "background", "integrator", "sampler", "nee", "mis",
                        "bsdf_sampling", "roulette", "max_diffuse_depth", "max_glossy_depth", "max_specular_depth",
-                       "clamp_direct", "clamp_indirect", "occlusion_length"},
+                       "clamp_direct", "clamp_indirect", "occlusion_length", "terminator_offset"},
                       {{"samples", "spp"}, {"max_depth", "depth"}, {"light_sampling", "nee"}});
   SceneSettings settings;
   object.read("width", settings.width, &Value::whole_number, 1u, largest_side);
@@ -87,6 +87,7 @@ SceneSettings read_settings(const Value& value) {
   object.read("clamp_direct", settings.clamp_direct, &Value::number, radiance_range);
   object.read("clamp_indirect", settings.clamp_indirect, &Value::number, radiance_range);
   object.read("occlusion_length", settings.occlusion_length, &Value::number, positive_length);
+  object.read("terminator_offset", settings.terminator_offset, &Value::boolean);
   return settings;
 }
 

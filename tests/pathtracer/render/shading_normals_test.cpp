@@ -133,3 +133,54 @@ TANDEM_DEVICE_TEST("Phong's lobes under a leaning normal lose nothing by it") {
       CHECK(std::abs(leaning.mean - flat.mean) < 5 * std::hypot(leaning.standard_error, flat.standard_error) + 2e-3);
     }
 }
+
+TANDEM_DEVICE_TEST(
+    "With the terminator offset the border of the shadow on a smooth ball of few faces is that of a ball") {
+  constexpr std::uint32_t columns = 16, rows = 8;
+  Scene faces;
+  faces.name = "ball";
+  for (std::uint32_t row = 0; row <= rows; ++row)
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const double polar = pi * row / rows, azimuth = 2 * pi * column / columns;
+      faces.positions.emplace_back(std::sin(polar) * std::sin(azimuth), std::cos(polar),
+                                   std::sin(polar) * std::cos(azimuth));
+    }
+  faces.normals = faces.positions;
+  for (std::uint32_t row = 0; row < rows; ++row)
+    for (std::uint32_t column = 0; column < columns; ++column) {
+      const std::uint32_t next = (column + 1) % columns;
+      const std::uint32_t a = row * columns + column, b = (row + 1) * columns + column;
+      const std::uint32_t c = (row + 1) * columns + next, d = row * columns + next;
+      if (row + 1 < rows) faces.triangles.push_back({{a, b, c}, triangle_smooth});
+      if (row > 0) faces.triangles.push_back({{a, c, d}, triangle_smooth});
+    }
+  faces.materials = {diffuse_material(glm::vec3(1))};
+  faces.material_names = {"m"};
+  Scene ball;
+  ball.name = "ball";
+  ball.spheres = {{.centre = glm::vec3(0), .radius = 1, .material = 0}};
+  ball.materials = faces.materials;
+  ball.material_names = faces.material_names;
+  ball.lights = {{.kind = LightKind::directional,
+                  .direction = glm::vec3(-1, -0.3f, -0.4f),
+                  .radiance = glm::vec3(static_cast<float>(pi))}};
+  faces.lights = ball.lights;
+  constexpr std::uint32_t side = 64;
+  const Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 4}, .height = 1.6f};
+  const RenderSettings settings{
+      .width = side, .height = side, .max_depth = 2, .camera = camera, .background = glm::vec3(0)};
+  const Image of_ball = test::rendered(device_handle, ball, settings, 4);
+  const auto largest_difference = [&](bool terminator_offset) {
+    RenderSettings with = settings;
+    with.terminator_offset = terminator_offset;
+    const Image of_faces = test::rendered(device_handle, faces, with, 4);
+    double largest = 0;
+    for (std::size_t i = 0; i < of_ball.pixels.size(); ++i)
+      largest = std::max(largest, std::abs(double{of_faces.pixels[i].x} - double{of_ball.pixels[i].x}));
+    return largest;
+  };
+  // The faces are up to 0.038 below the ball (1 - cos(pi / 16) twice), seen from the side up to a tenth beside it.
+  CHECK(largest_difference(true) < 0.12);
+  // Without it, faces that turn away from the light are black where the ball is lit.
+  CHECK(largest_difference(false) > 0.15);
+}

@@ -121,7 +121,7 @@ TEST_CASE("The render constants of the shader are RenderConstants") {
                             {"environment_right", offsetof(RenderConstants, environment_right)},
                             {"shutter", offsetof(RenderConstants, shutter)},
                             {"environment_up", offsetof(RenderConstants, environment_up)},
-                            {"reserved_0", offsetof(RenderConstants, reserved_0)},
+                            {"terminator_offset", offsetof(RenderConstants, terminator_offset)},
                             {"environment_forward", offsetof(RenderConstants, environment_forward)},
                             {"reserved_1", offsetof(RenderConstants, reserved_1)}};
   bool found = false;
