@@ -25,6 +25,18 @@ std::vector<rhi::SpecializationValue> complete(const rhi::ShaderReflection& refl
   return values;
 }
 
+/// The given values of constants that the shader has. Not `complete`, for two constants may share an id, and then each
+/// has a default of its own.
+std::vector<rhi::SpecializationValue> declared(const rhi::ShaderReflection& reflection,
+                                               std::span<const rhi::SpecializationValue> given) {
+  std::vector<rhi::SpecializationValue> values;
+  for (const rhi::SpecializationValue& value : given)
+    if (std::ranges::find(reflection.specialization_constants, value.id, &rhi::SpecializationConstant::id) !=
+        reflection.specialization_constants.end())
+      values.push_back(value);
+  return values;
+}
+
 /// Whether the kernel was made of the shader and the values, which are complete.
 bool is_made_of(const PrecompiledKernel& kernel, const rhi::ShaderModule& shader,
                 std::span<const rhi::SpecializationValue> values) {
@@ -67,7 +79,7 @@ Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi:
   const std::lock_guard lock(known->mutex);
   KernelLibraryHandle library = known->library.lock();
   if (library == nullptr) library = cache().find(key, label);
-  if (library == nullptr) library = compile(shader, values, key, label);
+  if (library == nullptr) library = compile(shader, declared(shader.reflection(), given), key, label);
   known->library = library;
   return {.info = &library->info(), .library = library};
 }

@@ -87,22 +87,29 @@ constexpr auto find_msb(const T& a) {
       a);
 }
 
-/// 1 where a + b does not fit 32 bits.
+/// 1 where a + b, of unsigned numbers, does not fit their width.
 template <typename T>
 constexpr T add_carry(const T& a, const T& b) {
-  return each([](std::uint32_t x, std::uint32_t y) { return x + y < x ? 1u : 0u; }, a, b);
+  using C = component_t<T>;
+  using U = std::make_unsigned_t<C>;
+  return each([](C x, C y) { return static_cast<C>(static_cast<U>(U(x) + U(y)) < U(x)); }, a, b);
 }
-/// 1 where a < b.
+/// 1 where a < b, of unsigned numbers.
 template <typename T>
 constexpr T subtract_borrow(const T& a, const T& b) {
-  return each([](std::uint32_t x, std::uint32_t y) { return x < y ? 1u : 0u; }, a, b);
+  using C = component_t<T>;
+  using U = std::make_unsigned_t<C>;
+  return each([](C x, C y) { return static_cast<C>(U(x) < U(y)); }, a, b);
 }
-/// The high 32 bits of the product.
+/// The upper half of the product, which has twice the width.
 template <typename T>
 constexpr T multiply_high(const T& a, const T& b) {
   using C = component_t<T>;
-  using Wide = std::conditional_t<std::is_signed_v<C>, std::int64_t, std::uint64_t>;
-  return each([](C x, C y) { return static_cast<C>((Wide{x} * Wide{y}) >> 32); }, a, b);
+  constexpr int width = 8 * sizeof(C);
+  __extension__ using Signed = std::conditional_t<width == 64, __int128, std::int64_t>;
+  __extension__ using Unsigned = std::conditional_t<width == 64, unsigned __int128, std::uint64_t>;
+  using Wide = std::conditional_t<std::is_signed_v<C>, Signed, Unsigned>;
+  return each([](C x, C y) { return static_cast<C>((static_cast<Wide>(x) * static_cast<Wide>(y)) >> width); }, a, b);
 }
 
 }  // namespace tandem::kernel

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 #include "rhi_cpu/kernel/components.hpp"
 #include "rhi_cpu/kernel/types.hpp"
@@ -206,9 +207,18 @@ inline T frexp(const T& a, Exponent& exponent) {
       },
       a);
 }
+/// Exponents of any width: beyond those that a float has, one is as good as another.
 template <typename T, typename Exponent>
 inline T ldexp(const T& a, const Exponent& exponent) {
-  return each([](auto x, auto e) { return std::ldexp(x, static_cast<int>(e)); }, a, exponent);
+  constexpr int beyond_all = 1 << 15;
+  return each(
+      [](auto x, auto e) {
+        const int power = std::cmp_greater(e, beyond_all) ? beyond_all
+                          : std::cmp_less(e, -beyond_all) ? -beyond_all
+                                                          : static_cast<int>(e);
+        return std::ldexp(x, power);
+      },
+      a, exponent);
 }
 
 }  // namespace tandem::kernel

@@ -11,6 +11,7 @@ inline constexpr const char* compile_options[] = {
     "-fno-fast-math",      //
     "-fno-math-errno",     // sqrt is one instruction; changes no value
     "-fno-trapping-math",  // nobody reads the exception flags; changes no value
+    "-DNDEBUG",            // an index beyond a vector is some component of it, not the end of the process
     "-fwrapv",             // signed integers wrap, as SPIR-V says
     // A shader is one loop over functions that take structures: left as calls they copy those through memory, which
     // costs up to half the speed. g++ inlines this far; clang++ accepts the options and goes by its own rules.

@@ -62,8 +62,8 @@ inline constexpr Operation operations[] = {
     {spv::OpTranspose, Shape::call, "transpose"},
     {spv::OpIAddCarry, Shape::double_width, "+", Sign::any, "add_carry"},
     {spv::OpISubBorrow, Shape::double_width, "-", Sign::any, "subtract_borrow"},
-    {spv::OpUMulExtended, Shape::double_width, "*", Sign::any, "multiply_high"},
-    {spv::OpSMulExtended, Shape::double_width, "*", Sign::any, "multiply_high"},
+    {spv::OpUMulExtended, Shape::double_width, "*", Sign::as_unsigned, "multiply_high"},
+    {spv::OpSMulExtended, Shape::double_width, "*", Sign::as_signed, "multiply_high"},
 
     // logic and relations
     {spv::OpLogicalAnd, Shape::relation, "&&", Sign::any, "logical_and"},

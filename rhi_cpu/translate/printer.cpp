@@ -55,6 +55,7 @@ std::string Printer::compile() {
 
 void Printer::set_up_backend() {
   options.version = 460;
+  options.es = false;  // that a module was ESSL would bring words of precision
   options.vulkan_semantics = true;
   options.force_recompile_max_debug_iterations = 256;
   backend.float_literal_suffix = true;

@@ -100,9 +100,12 @@ void Printer::print_conversion(const Instruction& i, const Operation& operation)
 }
 
 void Printer::print_double_width(const Instruction& i, const Operation& operation) {
-  if (type_of(i.operand(0)).width != 32) fail("integer arithmetic with a double-width result on other than 32 bits");
-  define(i, fmt::format("{0}{{{1} {2} {3}, k::{4}({1}, {3})}}", type_name(i.result_type()), value(i.operand(0)),
-                        operation.text, value(i.operand(1)), operation.function));
+  // Both halves have the type of the operands, whatever the signs that the operation goes by.
+  const Type& type = type_of(i.operand(0));
+  const std::string name = vector_name(type.basetype, type.vecsize);
+  define(i, fmt::format("{}{{{}({} {} {}), {}(k::{}({}))}}", type_name(i.result_type()), name, value(i.operand(0)),
+                        operation.text, value(i.operand(1)), name, operation.function,
+                        values_with_sign(i, 0, operation.sign)));
 }
 
 void Printer::print_shift(const Instruction& i, const Operation& operation) {

@@ -118,6 +118,25 @@ void main() {
   CHECK_ERROR(invalid_argument, "specialised: a workgroup size of 1048576", run({{7, 1u << 20}}));
 }
 
+TANDEM_DEVICE_TEST("two constants of one id keep their defaults until a value is given") {
+  // The workgroup size has the default 1.
+  const std::string source = R"(#version 460
+layout(local_size_x_id = 0) in;
+layout(constant_id = 0) const uint number = 32;
+layout(set = 0, binding = 0) buffer Values { float values[]; };
+void main() { values[0] = float(number); values[1] = float(gl_WorkGroupSize.x); }
+)";
+  const auto run = [&](std::vector<rhi::SpecializationValue> specialization) {
+    const rhi::ComputePipelineHandle pipeline =
+        test::compute_pipeline(device, source, "shared id", std::move(specialization));
+    const rhi::BufferHandle values = test::buffer_of(device, std::vector<float>(2), "values");
+    test::run(device, pipeline, {values});
+    return contents<float>(device, values, 2);
+  };
+  CHECK(run({}) == std::vector<float>{32, 1});
+  CHECK(run({{0, 4}}) == std::vector<float>{4, 4});
+}
+
 TANDEM_DEVICE_TEST("uniform and storage buffers of several sets, with offsets") {
   const rhi::ComputePipelineHandle pipeline = test::compute_pipeline(device, R"(#version 460
 layout(local_size_x = 4) in;
