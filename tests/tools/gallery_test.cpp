@@ -63,7 +63,7 @@ TEST_CASE("gallery says what is wrong with a list, and makes pictures small") {
   };
   const std::string tiny = "--size 8x8 --spp 1";
   CHECK(run(list(R"(, "colour": 5)"), tiny).errors.find("scenes[0].colour is not known") != std::string::npos);
-  CHECK(run(list(""), "--only teapot").errors == "tandem: list.json lists no scene 'teapot'\n");
+  CHECK(run(list(""), "--only teapot").errors == "tandem: list.json lists no scene 'teapot'; it lists cornell_box\n");
   CHECK(run(R"({"scenes": []})", tiny).exit_code == 2);
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
 

@@ -111,7 +111,8 @@ JunitCase junit_case(const Findings& findings) {
 
 /// What is to be written once the findings and the page are complete. It refers to both, so that files can be checked
 /// before anything is rendered.
-std::vector<OutputFile> output_files(const Options& options, const Findings& findings, const std::string& page) {
+std::vector<OutputFile> output_files(const Options& options, const Findings& findings, const std::string& page,
+                                     std::optional<compare::MetricSet> metrics) {
   const compare::Comparison& comparison = findings.comparison;
   std::vector<OutputFile> files;
   const auto add_text = [&](const std::filesystem::path& path, const auto& text) {
@@ -157,7 +158,7 @@ std::vector<OutputFile> output_files(const Options& options, const Findings& fin
         metadata, {});
   add("difference.png", [&comparison] { return compare::heat_map(comparison.a.image, comparison.b.image); }, metadata,
       {});
-  if (options.comparison.comparison.metrics == compare::MetricSet::all) {
+  if (metrics == compare::MetricSet::all) {
     add("flip.png", [&comparison] { return compare::error_map(*comparison.detailed_metrics->flip); }, metadata, {});
   }
   return files;
@@ -185,7 +186,7 @@ int diff(const Options& options) {
   }
   Findings findings;
   std::string page;
-  const std::vector<OutputFile> files = output_files(options, findings, page);
+  const std::vector<OutputFile> files = output_files(options, findings, page, wanted.metrics);
   const auto output_folder = [](const std::filesystem::path& path) {
     return path.empty() ? std::nullopt : std::make_optional<OutputFolder>(path);
   };

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -43,11 +44,17 @@ struct Options {
   std::uint32_t threads = 0;
 };
 
+std::string names_of(const std::vector<GalleryScene>& scenes) {
+  std::vector<std::string> names;
+  for (const GalleryScene& scene : scenes) names.push_back(scene.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 std::vector<GalleryScene> chosen_scenes(const Options& options) {
   std::vector<GalleryScene> scenes = read_gallery(options.list);
   for (const std::string& name : options.only)
     if (std::ranges::none_of(scenes, [&](const GalleryScene& scene) { return scene.name == name; }))
-      throw Error(fmt::format("{} lists no scene '{}'", options.list.string(), name));
+      throw Error(fmt::format("{} lists no scene '{}'; it lists {}", options.list.string(), name, names_of(scenes)));
   if (!options.only.empty())
     std::erase_if(scenes, [&](const GalleryScene& scene) { return std::ranges::count(options.only, scene.name) == 0; });
   return scenes;
@@ -149,7 +156,7 @@ void add_gallery_command(CLI::App& app, Action& action) {
       ->type_name("DIR")
       ->capture_default_str();
   add_device_pair(*command, options->a, options->b);
-  command->add_option("--only", options->only, "Render only these scenes")->type_name("NAME");
+  command->add_option("--only", options->only, "Render only these scenes")->delimiter(',')->type_name("NAME,...");
   add_size(*command, "--size", options->size, "Width and height in pixels [the scene file's, or else 512x512]");
   add_whole_number(*command, "--spp", options->samples, 1, 1U << 24, "Samples per pixel [those of the list]");
   add_whole_number(*command, "--threads", options->threads, 0, 1024,

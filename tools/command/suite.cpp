@@ -104,7 +104,9 @@ void add_suite_command(CLI::App& app, Action& action) {
   command->add_flag("--validation", options->execution.validation,
                     "Enable the Vulkan validation layers; their messages go to standard error");
   command->footer(
-      "Exit code: 0 all agree, 1 a comparison differs or failed, 2 error, 130 interrupted: run it again to continue.\n"
+      "Exit code: 0 all agree, 1 a comparison differs or failed, 2 error, 3 some differ, but for reasons that the "
+      "scene\n"
+      "owns, 130 interrupted: run it again to continue.\n"
       "Examples:\n"
       "  tandem suite scenes/suite.json --out suite\n"
       "  tandem suite nightly.json --out nightly --junit nightly.xml");

@@ -35,8 +35,8 @@ void add_device_pair(CLI::App& command, std::string& a, std::string& b) {
   CLI::Option* const second = command.add_option("--b", b, "The second device")->type_name("D2")->capture_default_str();
   const auto read = [&a, &b](const std::vector<std::string>& names) {
     if (names.size() != 2)
-      throw CLI::ValidationError(
-          option, fmt::format("two devices are compared, not {}; 'tandem matrix' compares more", names.size()));
+      throw CLI::ValidationError(option, fmt::format("two devices are compared, not {}{}", names.size(),
+                                                     names.size() > 2 ? "; 'tandem matrix' compares more" : ""));
     a = names[0];
     b = names[1];
   };

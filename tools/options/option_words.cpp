@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "base/error.hpp"
 #include "devices/devices.hpp"
 
 namespace tandem::tools {
@@ -11,6 +14,11 @@ namespace {
 constexpr std::string_view device_option = "--device";
 constexpr std::pair<std::string_view, std::string_view> old_names[] = {
     {"--samples", "--spp"}, {"--max-depth", "--depth"}, {"--light-sampling", "--nee"}, {"--vertical-fov", "--fov"}};
+
+/// Whether a comma of the list has nothing on one of its sides.
+bool has_empty_name(std::string_view list) {
+  return list.empty() || list.front() == ',' || list.back() == ',' || list.find(",,") != std::string_view::npos;
+}
 
 }  // namespace
 
@@ -29,8 +37,14 @@ std::vector<std::string> option_words(std::span<const char* const> arguments) {
       continue;
     }
     const std::string_view name = argument.substr(0, argument.find('='));
+    const std::string_view value =
+        follows_option ? argument : argument.substr(std::min(name.size() + 1, argument.size()));
+    const bool is_value = follows_option || (name == device_option && argument != device_option);
+    if (is_value && has_empty_name(value))
+      throw Error(
+          fmt::format("{}: '{}' is not a device or a list of devices such as cpu,vulkan", device_option, value));
     words.emplace_back(current_name(name)).append(argument.substr(name.size()));
-    follows_devices = follows_option || (name == device_option && argument != device_option);
+    follows_devices = is_value;
     follows_option = !follows_option && argument == device_option;
   }
   return words;

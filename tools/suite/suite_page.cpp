@@ -102,15 +102,16 @@ std::string cell_html(const SuiteResult& result, const std::filesystem::path& fo
   return html;
 }
 
-/// Each device that took part, once, with what it is.
-std::set<std::string> device_sentences(const std::vector<SuiteResult>& results) {
-  std::set<std::string> sentences;
+/// Each device that took part, once, with what it is, in the order of the comparisons.
+std::vector<std::string> device_sentences(const std::vector<SuiteResult>& results) {
+  std::vector<std::string> sentences;
   for (const SuiteResult& result : results) {
     if (result.failed()) continue;
     for (const char* side : {"device_a", "device_b"}) {
       const Json& device = result.json.at("report").at(side);
-      sentences.insert(
-          fmt::format("{}: {}, {}", string(device, "name"), string(device, "description"), string(device, "driver")));
+      const std::string sentence =
+          fmt::format("{}: {}, {}", string(device, "name"), string(device, "description"), string(device, "driver"));
+      if (std::ranges::count(sentences, sentence) == 0) sentences.push_back(sentence);
     }
   }
   return sentences;

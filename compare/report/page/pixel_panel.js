@@ -97,7 +97,7 @@ function lookSentence(data, pixels, names) {
   const first = pixels.ranked[0];
   if (!first) {
     return data.classification
-      ? "Nowhere: every pixel has the same bits on both devices, and so had every event of the paths that were compared."
+      ? "Nowhere: every pixel has the same bits on both devices, and the paths that were compared agree in all that a result depends on."
       : "Nowhere: every pixel has the same bits on both devices.";
   }
   const x = first.index % pixels.width;

@@ -112,14 +112,21 @@ void read_colors(GltfDocument& document, const tinygltf::Primitive& source, cons
   const auto values = attribute(document, source, primitive, "COLOR_0", 3, 4);
   if (!values || values->count == 0) return;
   const std::size_t n = values->components;
+  bool is_in_range = true;
   for (std::size_t i = 0; i < values->count; ++i) {
     glm::vec4 color(1);
-    for (std::size_t channel = 0; channel < n; ++channel)
-      color[static_cast<int>(channel)] =
-          gltf_number(document, double{values->values[n * i + channel]}, 0, 1, primitive.name, "COLOR_0");
+    for (std::size_t channel = 0; channel < n; ++channel) {
+      const float number = values->values[n * i + channel];
+      if (!std::isfinite(number))
+        throw gltf_error(document, primitive.name, fmt::format("COLOR_0 of vertex {} is not finite", i));
+      is_in_range = is_in_range && number >= 0 && number <= 1;
+      color[static_cast<int>(channel)] = std::clamp(number, 0.0f, 1.0f);
+    }
     if (!material.has_alpha) color.a = 1;
     primitive.colors.push_back(color);
   }
+  if (!is_in_range)
+    gltf_warn(document, fmt::format("{} has colours (COLOR_0) beyond 0 and 1, which count as 0 and 1", primitive.name));
   if (std::ranges::all_of(primitive.colors, [&](const glm::vec4& color) { return color == primitive.colors[0]; })) {
     primitive.color = primitive.colors[0];
     primitive.colors.clear();

@@ -166,7 +166,7 @@ TANDEM_DEVICE_TEST(
                   .radiance = glm::vec3(static_cast<float>(pi))}};
   faces.lights = ball.lights;
   constexpr std::uint32_t side = 64;
-  const Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 4}, .height = 1.6f};
+  const Camera camera{.kind = CameraKind::orthographic, .position = {0, 0, 4}, .height = 1.2f};
   const RenderSettings settings{
       .width = side, .height = side, .max_depth = 2, .camera = camera, .background = glm::vec3(0)};
   const Image of_ball = test::rendered(device_handle, ball, settings, 4);
@@ -179,8 +179,8 @@ TANDEM_DEVICE_TEST(
       largest = std::max(largest, std::abs(double{of_faces.pixels[i].x} - double{of_ball.pixels[i].x}));
     return largest;
   };
-  // The faces are up to 0.038 below the ball (1 - cos(pi / 16) twice), seen from the side up to a tenth beside it.
-  CHECK(largest_difference(true) < 0.12);
-  // Without it, faces that turn away from the light are black where the ball is lit.
-  CHECK(largest_difference(false) > 0.15);
+  // Measured 0.016: the picture ends within the outline of the faces, which are up to 0.04 below the ball. A border
+  // that follows the faces is off by up to the cosine's change over one of them, 0.2.
+  CHECK(largest_difference(true) < 0.03);
+  CHECK(largest_difference(false) > 0.1);
 }
