@@ -193,7 +193,8 @@ precise Surface triangle_surface(uint primitive, vec3 origin, vec3 direction, ou
                                 turned ? -1.0 : 1.0);
         // Well above what offset_point takes back for directions below the triangle's plane.
         precise float height = det_dot(rise, surface.geometric_normal);
-        if (height > 4.0 * surface.offset) {
+        precise float safe_height = 4.0 * surface.offset;
+        if (height > safe_height) {
           surface.departure = surface.position + rise;
           surface.side_normal = smooth_normal;
         }

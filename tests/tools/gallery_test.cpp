@@ -107,12 +107,12 @@ TEST_CASE("a gallery that ends early shows what was finished, and nothing else")
   };
   const std::string endless =
       R"({"file": ")" TANDEM_SOURCE_DIRECTORY R"(/scenes/cornell_spheres.obj", "title": "spheres", "spp": 16777216})";
-  const Outcome at_once = run(endless, 3000);
+  const Outcome at_once = run(endless, 6000);
   CHECK(at_once.exit_code == 130);
   CHECK(at_once.errors == "tandem: interrupted; nothing was written\n");
   CHECK_FALSE(std::filesystem::exists(folder.path() / "out"));
 
-  const Outcome later = run(good + ", " + endless, 3000);
+  const Outcome later = run(good + ", " + endless, 6000);
   CHECK(later.exit_code == 130);
   CHECK(later.errors == "tandem: interrupted after 1 of 2 scenes, which 'out/index.html' shows\n");
   const nlohmann::json report = nlohmann::json::parse(read_text(folder.path() / "out/gallery.json"));
