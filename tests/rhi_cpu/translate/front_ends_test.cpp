@@ -62,6 +62,15 @@ std::vector<std::uint32_t> module(const std::string& type, const std::string& de
   return words;
 }
 
+/// What such a module stores.
+template <typename T>
+std::vector<T> stored(const std::string& type, const std::string& declarations, const std::string& statements,
+                      std::size_t count) {
+  std::vector<T> result(count);
+  Kernel(module(type, declarations, statements, static_cast<int>(count)), {}).run({resource(result)});
+  return result;
+}
+
 }  // namespace
 
 TEST_CASE("a product of double width goes by its operation, not by the type of its operands") {
@@ -77,8 +86,7 @@ TEST_CASE("a product of double width goes by its operation, not by the type of i
     %r1 = OpCompositeExtract %uint %signed 1
     %r2 = OpCompositeExtract %uint %unsigned 1
   )";
-  std::vector<std::uint32_t> result(3);
-  Kernel(module("%uint", declarations, statements, 3), {}).run({resource(result)});
+  const std::vector<std::uint32_t> result = stored<std::uint32_t>("%uint", declarations, statements, 3);
   CHECK(result == std::vector<std::uint32_t>{0xfffffffau, 0xffffffffu, 1u});
 }
 
@@ -104,8 +112,7 @@ TEST_CASE("products of double width have every width") {
     %r1 = OpUConvert %uint %unsigned_high
     %r2 = OpUConvert %uint %low_bits
   )";
-  std::vector<std::uint32_t> result(3);
-  Kernel(module("%uint", declarations, statements, 3), {}).run({resource(result)});
+  const std::vector<std::uint32_t> result = stored<std::uint32_t>("%uint", declarations, statements, 3);
   // -3 (2^63 - 1) is -2 times 2^64 and 2^63 + 3; of 2^64 - 3 and 2^63 - 1 the upper half is 2^63 - 3.
   CHECK(result == std::vector<std::uint32_t>{0xfffffffeu, 0xfffffffdu, 3u});
 }
@@ -125,8 +132,7 @@ TEST_CASE("ldexp takes exponents of 64 bits") {
     %r2 = OpExtInst %float %glsl Ldexp %one %wraps
     %r3 = OpExtInst %float %glsl Ldexp %one %three
   )";
-  std::vector<float> result(4);
-  Kernel(module("%float", declarations, statements, 4), {}).run({resource(result)});
+  const std::vector<float> result = stored<float>("%float", declarations, statements, 4);
   CHECK(result[0] == 0);
   CHECK(std::signbit(result[0]));
   CHECK(std::isinf(result[1]));
