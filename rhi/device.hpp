@@ -61,7 +61,7 @@ struct Limits {
   std::uint32_t max_shader_record_stride = 0;
   std::uint32_t shader_handle_size = 0;  ///< of a record, before its data
   std::uint32_t max_hit_attribute_size = 0;
-  std::array<std::uint32_t, 4> max_texture_size = {0, 0, 0, 0};  ///< of a side, by TextureDimension
+  std::array<std::uint32_t, 7> max_texture_size = {};  ///< of a side, by TextureDimension
   std::uint32_t max_texture_layers = 0;
 };
 

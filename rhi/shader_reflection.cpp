@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -38,33 +37,46 @@ ShaderStage stage_of(spv::ExecutionModel model, std::string_view label) {
   }
 }
 
-/// SPIR-V's own names, in the order of its numbers.
-std::string image_format_name(spv::ImageFormat format) {
-  constexpr const char* names[] = {
-      "Unknown",  "Rgba32f",  "Rgba16f", "R32f",     "Rgba8",    "Rgba8Snorm", "Rg32f", "Rg16f",       "R11fG11fB10f",
-      "R16f",     "Rgba16",   "Rgb10A2", "Rg16",     "Rg8",      "R16",        "R8",    "Rgba16Snorm", "Rg16Snorm",
-      "Rg8Snorm", "R16Snorm", "R8Snorm", "Rgba32i",  "Rgba16i",  "Rgba8i",     "R32i",  "Rg32i",       "Rg16i",
-      "Rg8i",     "R16i",     "R8i",     "Rgba32ui", "Rgba16ui", "Rgba8ui",    "R32ui", "Rgb10a2ui",   "Rg32ui",
-      "Rg16ui",   "Rg8ui",    "R16ui",   "R8ui",     "R64ui",    "R64i"};
-  static_assert(std::size(names) == spv::ImageFormatR64i + 1);
-  return format < std::size(names) ? names[format] : std::to_string(format);
-}
-
 TextureDimension dimension_of(const spirv_cross::SPIRType::ImageType& image, const std::string& name,
                               std::string_view label) {
-  const bool plain = !image.ms && !image.arrayed;
-  if (image.dim == spv::Dim1D && plain) return TextureDimension::d1;
-  if (image.dim == spv::Dim2D && plain) return TextureDimension::d2;
-  if (image.dim == spv::Dim3D && plain) return TextureDimension::d3;
-  if (image.dim == spv::Dim2D && !image.ms) return TextureDimension::d2_array;
-  throw Error(ErrorCode::unsupported, label,
-              "the storage image " + name + " is neither image1D, image2D, image3D nor image2DArray");
+  if (image.ms) throw Error(ErrorCode::unsupported, label, "the image " + name + " has several samples");
+  switch (image.dim) {
+    case spv::Dim1D:
+      return image.arrayed ? TextureDimension::d1_array : TextureDimension::d1;
+    case spv::Dim2D:
+      return image.arrayed ? TextureDimension::d2_array : TextureDimension::d2;
+    case spv::DimCube:
+      return image.arrayed ? TextureDimension::cube_array : TextureDimension::cube;
+    case spv::Dim3D:
+      return TextureDimension::d3;
+    case spv::DimBuffer:
+      return TextureDimension::d1;
+    default:
+      throw Error(ErrorCode::unsupported, label,
+                  "the image " + name + " has a dimension that a compute shader cannot have");
+  }
 }
 
 std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::string& name, std::string_view label) {
   switch (format) {
     case spv::ImageFormatUnknown:
       return std::nullopt;
+    case spv::ImageFormatR8:
+      return TextureFormat::r8_unorm;
+    case spv::ImageFormatR8Snorm:
+      return TextureFormat::r8_snorm;
+    case spv::ImageFormatR8ui:
+      return TextureFormat::r8_uint;
+    case spv::ImageFormatR8i:
+      return TextureFormat::r8_sint;
+    case spv::ImageFormatRg8:
+      return TextureFormat::rg8_unorm;
+    case spv::ImageFormatRg8Snorm:
+      return TextureFormat::rg8_snorm;
+    case spv::ImageFormatRg8ui:
+      return TextureFormat::rg8_uint;
+    case spv::ImageFormatRg8i:
+      return TextureFormat::rg8_sint;
     case spv::ImageFormatRgba8:
       return TextureFormat::rgba8_unorm;
     case spv::ImageFormatRgba8Snorm:
@@ -73,6 +85,30 @@ std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::strin
       return TextureFormat::rgba8_uint;
     case spv::ImageFormatRgba8i:
       return TextureFormat::rgba8_sint;
+    case spv::ImageFormatR16:
+      return TextureFormat::r16_unorm;
+    case spv::ImageFormatR16Snorm:
+      return TextureFormat::r16_snorm;
+    case spv::ImageFormatR16ui:
+      return TextureFormat::r16_uint;
+    case spv::ImageFormatR16i:
+      return TextureFormat::r16_sint;
+    case spv::ImageFormatR16f:
+      return TextureFormat::r16_float;
+    case spv::ImageFormatRg16:
+      return TextureFormat::rg16_unorm;
+    case spv::ImageFormatRg16Snorm:
+      return TextureFormat::rg16_snorm;
+    case spv::ImageFormatRg16ui:
+      return TextureFormat::rg16_uint;
+    case spv::ImageFormatRg16i:
+      return TextureFormat::rg16_sint;
+    case spv::ImageFormatRg16f:
+      return TextureFormat::rg16_float;
+    case spv::ImageFormatRgba16:
+      return TextureFormat::rgba16_unorm;
+    case spv::ImageFormatRgba16Snorm:
+      return TextureFormat::rgba16_snorm;
     case spv::ImageFormatRgba16ui:
       return TextureFormat::rgba16_uint;
     case spv::ImageFormatRgba16i:
@@ -97,10 +133,18 @@ std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::strin
       return TextureFormat::rgba32_sint;
     case spv::ImageFormatRgba32f:
       return TextureFormat::rgba32_float;
+    case spv::ImageFormatR64ui:
+      return TextureFormat::r64_uint;
+    case spv::ImageFormatR64i:
+      return TextureFormat::r64_sint;
+    case spv::ImageFormatRgb10A2:
+      return TextureFormat::rgb10a2_unorm;
+    case spv::ImageFormatRgb10a2ui:
+      return TextureFormat::rgb10a2_uint;
+    case spv::ImageFormatR11fG11fB10f:
+      return TextureFormat::rg11b10_float;
     default:
-      throw Error(ErrorCode::unsupported, label,
-                  "the storage image " + name + " has the image format " + image_format_name(format) +
-                      ", which not every device has");
+      throw Error(ErrorCode::unsupported, label, "the image " + name + " has an unknown format");
   }
 }
 
@@ -124,9 +168,9 @@ class Reflector {
     add(resources.uniform_buffers, BindingKind::uniform_buffer);
     add(resources.storage_buffers, BindingKind::storage_buffer);
     add(resources.acceleration_structures, BindingKind::acceleration_structure);
-    add(resources.storage_images, BindingKind::storage_image);
-    add(resources.sampled_images, BindingKind::sampled_image);
-    add(resources.separate_images, BindingKind::sampled_image);
+    add_images(resources.storage_images, BindingKind::storage_image, BindingKind::storage_texel_buffer);
+    add_images(resources.sampled_images, BindingKind::combined_image_sampler, BindingKind::uniform_texel_buffer);
+    add_images(resources.separate_images, BindingKind::sampled_image, BindingKind::uniform_texel_buffer);
     add(resources.separate_samplers, BindingKind::sampler);
     std::sort(result_.bindings.begin(), result_.bindings.end(), [](const ShaderBinding& a, const ShaderBinding& b) {
       return std::tie(a.set, a.binding) < std::tie(b.set, b.binding);
@@ -161,20 +205,33 @@ class Reflector {
                       a.name + " and " + b.name);
   }
 
+  ShaderBinding binding_of(const spirv_cross::Resource& resource, BindingKind kind) const {
+    ShaderBinding binding;
+    binding.name = resource.name;
+    binding.kind = kind;
+    binding.set = compiler_.get_decoration(resource.id, spv::DecorationDescriptorSet);
+    binding.binding = compiler_.get_decoration(resource.id, spv::DecorationBinding);
+    binding.count = descriptor_count(resource);
+    return binding;
+  }
+
   void add(const spirv_cross::SmallVector<spirv_cross::Resource>& resources, BindingKind kind) {
     for (const spirv_cross::Resource& resource : resources) {
-      ShaderBinding binding;
-      binding.name = resource.name;
-      binding.kind = kind;
-      binding.set = compiler_.get_decoration(resource.id, spv::DecorationDescriptorSet);
-      binding.binding = compiler_.get_decoration(resource.id, spv::DecorationBinding);
-      binding.count = descriptor_count(resource);
+      ShaderBinding binding = binding_of(resource, kind);
       if (kind == BindingKind::storage_buffer)
         binding.writable = !compiler_.get_buffer_block_flags(resource.id).get(spv::DecorationNonWritable);
+      result_.bindings.push_back(std::move(binding));
+    }
+  }
+
+  void add_images(const spirv_cross::SmallVector<spirv_cross::Resource>& resources, BindingKind kind,
+                  BindingKind of_buffers) {
+    for (const spirv_cross::Resource& resource : resources) {
+      const spirv_cross::SPIRType::ImageType& image = compiler_.get_type(resource.base_type_id).image;
+      ShaderBinding binding = binding_of(resource, image.dim == spv::DimBuffer ? of_buffers : kind);
+      binding.dimension = dimension_of(image, resource.name, label_);
       if (kind == BindingKind::storage_image) {
         binding.writable = !compiler_.has_decoration(resource.id, spv::DecorationNonWritable);
-        const spirv_cross::SPIRType::ImageType& image = compiler_.get_type(resource.base_type_id).image;
-        binding.dimension = dimension_of(image, resource.name, label_);
         binding.format = format_of(image.format, resource.name, label_);
       }
       result_.bindings.push_back(std::move(binding));

@@ -20,7 +20,10 @@ enum class BindingKind {
   acceleration_structure,
   storage_image,
   sampled_image,
-  sampler
+  sampler,
+  combined_image_sampler,
+  uniform_texel_buffer,
+  storage_texel_buffer
 };
 
 /// One descriptor, or an array of them, that a shader declares and statically uses.
@@ -29,9 +32,10 @@ struct ShaderBinding {
   std::uint32_t binding = 0;
   std::uint32_t count = 1;  ///< array length
   BindingKind kind = BindingKind::storage_buffer;
-  bool writable = false;                              ///< a storage buffer or image without NonWritable
-  TextureDimension dimension = TextureDimension::d2;  ///< of a storage image
-  std::optional<TextureFormat> format;                ///< of a storage image; absent where the shader names none
+  bool writable = false;                              ///< a storage buffer, image or texel buffer without NonWritable
+  TextureDimension dimension = TextureDimension::d2;  ///< of an image
+  /// Of a storage image or storage texel buffer; absent where the shader names none.
+  std::optional<TextureFormat> format;
   std::string name;
 };
 

@@ -1,30 +1,47 @@
 #include "rhi/texture.hpp"
 
+#include <algorithm>
+#include <bit>
+
 namespace tandem::rhi {
 
-std::uint32_t size_of(TextureFormat format) {
-  switch (format) {
-    case TextureFormat::rgba8_unorm:
-    case TextureFormat::rgba8_snorm:
-    case TextureFormat::rgba8_uint:
-    case TextureFormat::rgba8_sint:
-    case TextureFormat::r32_uint:
-    case TextureFormat::r32_sint:
-    case TextureFormat::r32_float:
-      return 4;
-    case TextureFormat::rgba16_uint:
-    case TextureFormat::rgba16_sint:
-    case TextureFormat::rgba16_float:
-    case TextureFormat::rg32_uint:
-    case TextureFormat::rg32_sint:
-    case TextureFormat::rg32_float:
-      return 8;
-    case TextureFormat::rgba32_uint:
-    case TextureFormat::rgba32_sint:
-    case TextureFormat::rgba32_float:
-      return 16;
+std::uint32_t side_count(TextureDimension dimension) {
+  switch (dimension) {
+    case TextureDimension::d1:
+    case TextureDimension::d1_array:
+      return 1;
+    case TextureDimension::d3:
+      return 3;
+    default:
+      return 2;
   }
-  return 0;
+}
+
+bool is_layered(TextureDimension dimension) {
+  return dimension != TextureDimension::d1 && dimension != TextureDimension::d2 && dimension != TextureDimension::d3;
+}
+
+std::array<std::uint32_t, 3> level_size(const TextureDesc& desc, std::uint32_t level) {
+  std::array<std::uint32_t, 3> size = desc.size;
+  for (std::uint32_t i = 0; i < side_count(desc.dimension); ++i) size[i] = std::max(size[i] >> level, 1u);
+  return size;
+}
+
+std::uint64_t level_size_in_bytes(const TextureDesc& desc, std::uint32_t level) {
+  const std::array<std::uint32_t, 3> size = level_size(desc, level);
+  return std::uint64_t{size_of(desc.format)} * size[0] * size[1] * size[2];
+}
+
+std::uint32_t full_level_count(const TextureDesc& desc) {
+  std::uint32_t largest = 1;
+  for (std::uint32_t i = 0; i < side_count(desc.dimension); ++i) largest = std::max(largest, desc.size[i]);
+  return static_cast<std::uint32_t>(std::bit_width(largest));
+}
+
+std::uint64_t Texture::size_in_bytes() const noexcept {
+  std::uint64_t size = 0;
+  for (std::uint32_t level = 0; level < desc_.level_count; ++level) size += level_size_in_bytes(desc_, level);
+  return size;
 }
 
 }  // namespace tandem::rhi

@@ -6,43 +6,35 @@
 #include <string>
 #include <utility>
 
+#include "rhi/texture_format.hpp"
+
 namespace tandem::rhi {
 
-enum class TextureDimension : std::uint32_t { d1, d2, d3, d2_array };
-
-/// The formats that every Vulkan device can use for storage images.
-enum class TextureFormat : std::uint32_t {
-  rgba8_unorm,
-  rgba8_snorm,
-  rgba8_uint,
-  rgba8_sint,
-  rgba16_uint,
-  rgba16_sint,
-  rgba16_float,
-  r32_uint,
-  r32_sint,
-  r32_float,
-  rg32_uint,
-  rg32_sint,
-  rg32_float,
-  rgba32_uint,
-  rgba32_sint,
-  rgba32_float
-};
-
-/// Bytes of one texel.
-std::uint32_t size_of(TextureFormat format);
+/// The numbers of VkImageViewType.
+enum class TextureDimension : std::uint32_t { d1, d2, d3, cube, d1_array, d2_array, cube_array };
 
 struct TextureDesc {
   TextureDimension dimension = TextureDimension::d2;
   TextureFormat format = TextureFormat::rgba8_unorm;
-  std::array<std::uint32_t, 3> size = {1, 1, 1};  ///< width, height, depth or layers; 1 where the dimension has none
+  /// Width, height, and depth or layers, of which a cube has 6 each; 1 where the dimension has none.
+  std::array<std::uint32_t, 3> size = {1, 1, 1};
+  std::uint32_t level_count = 1;  ///< mip levels, each half the size of the one before, rounded down, at least 1
   std::string label;
 };
 
-/// Texels that a shader reads and writes as a storage image (image1D, image2D, image3D, image2DArray). Its contents are
-/// undefined until written, by CommandList::copy_to_texture or a shader. No samplers: what the path tracer filters, it
-/// filters itself, so that every backend agrees.
+/// How many of size[] are sides, which are halved from level to level; the other one is layers.
+std::uint32_t side_count(TextureDimension dimension);
+/// Whether size[2] is layers.
+bool is_layered(TextureDimension dimension);
+/// Of a level; size[2] stays where it is layers.
+std::array<std::uint32_t, 3> level_size(const TextureDesc& desc, std::uint32_t level);
+/// Bytes of a level, tightly packed: x fastest, then y, then z or the layer.
+std::uint64_t level_size_in_bytes(const TextureDesc& desc, std::uint32_t level);
+/// The most levels of a texture of this size.
+std::uint32_t full_level_count(const TextureDesc& desc);
+
+/// Texels that a shader reads and writes as a storage image, fetches, or samples. Its contents are undefined until
+/// written, by CommandList::copy_to_texture or a shader.
 class Texture {
  public:
   virtual ~Texture() = default;
@@ -50,10 +42,8 @@ class Texture {
   Texture& operator=(const Texture&) = delete;
 
   const TextureDesc& desc() const noexcept { return desc_; }
-  /// Of all texels, tightly packed: x fastest, then y, then z or the layer.
-  std::uint64_t size_in_bytes() const noexcept {
-    return std::uint64_t{size_of(desc_.format)} * desc_.size[0] * desc_.size[1] * desc_.size[2];
-  }
+  /// Of all levels, one behind the other, each tightly packed.
+  std::uint64_t size_in_bytes() const noexcept;
 
  protected:
   explicit Texture(TextureDesc desc) : desc_(std::move(desc)) {}

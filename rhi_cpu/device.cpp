@@ -156,7 +156,7 @@ rhi::Limits limits() {
           .max_shader_record_stride = 4096,
           .shader_handle_size = 32,
           .max_hit_attribute_size = kernel::max_hit_attribute_size,
-          .max_texture_size = {16384, 16384, 2048, 16384},
+          .max_texture_size = {16384, 16384, 2048, 16384, 16384, 16384, 16384},
           .max_texture_layers = 2048};
 }
 

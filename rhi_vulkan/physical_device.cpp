@@ -152,8 +152,9 @@ rhi::Limits limits_of(const vk::PhysicalDeviceLimits& core,
   limits.max_geometry_count = acceleration.maxGeometryCount;
   limits.max_primitive_count = acceleration.maxPrimitiveCount;
   limits.max_instance_count = std::min<std::uint64_t>(acceleration.maxInstanceCount, most_instances);
-  limits.max_texture_size = {core.maxImageDimension1D, core.maxImageDimension2D, core.maxImageDimension3D,
-                             core.maxImageDimension2D};
+  limits.max_texture_size = {core.maxImageDimension1D,   core.maxImageDimension2D, core.maxImageDimension3D,
+                             core.maxImageDimensionCube, core.maxImageDimension1D, core.maxImageDimension2D,
+                             core.maxImageDimensionCube};
   limits.max_texture_layers = core.maxImageArrayLayers;
   return limits;
 }

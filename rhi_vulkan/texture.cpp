@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "rhi_vulkan/command_buffer.hpp"
+#include "rhi_vulkan/formats.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -11,47 +12,10 @@ namespace {
 constexpr vk::ImageUsageFlags usage =
     vk::ImageUsageFlagBits::eStorage | vk::ImageUsageFlagBits::eTransferSrc | vk::ImageUsageFlagBits::eTransferDst;
 
-vk::Format format_of(rhi::TextureFormat format) {
-  switch (format) {
-    case rhi::TextureFormat::rgba8_unorm:
-      return vk::Format::eR8G8B8A8Unorm;
-    case rhi::TextureFormat::rgba8_snorm:
-      return vk::Format::eR8G8B8A8Snorm;
-    case rhi::TextureFormat::rgba8_uint:
-      return vk::Format::eR8G8B8A8Uint;
-    case rhi::TextureFormat::rgba8_sint:
-      return vk::Format::eR8G8B8A8Sint;
-    case rhi::TextureFormat::rgba16_uint:
-      return vk::Format::eR16G16B16A16Uint;
-    case rhi::TextureFormat::rgba16_sint:
-      return vk::Format::eR16G16B16A16Sint;
-    case rhi::TextureFormat::rgba16_float:
-      return vk::Format::eR16G16B16A16Sfloat;
-    case rhi::TextureFormat::r32_uint:
-      return vk::Format::eR32Uint;
-    case rhi::TextureFormat::r32_sint:
-      return vk::Format::eR32Sint;
-    case rhi::TextureFormat::r32_float:
-      return vk::Format::eR32Sfloat;
-    case rhi::TextureFormat::rg32_uint:
-      return vk::Format::eR32G32Uint;
-    case rhi::TextureFormat::rg32_sint:
-      return vk::Format::eR32G32Sint;
-    case rhi::TextureFormat::rg32_float:
-      return vk::Format::eR32G32Sfloat;
-    case rhi::TextureFormat::rgba32_uint:
-      return vk::Format::eR32G32B32A32Uint;
-    case rhi::TextureFormat::rgba32_sint:
-      return vk::Format::eR32G32B32A32Sint;
-    case rhi::TextureFormat::rgba32_float:
-      return vk::Format::eR32G32B32A32Sfloat;
-  }
-  return vk::Format::eUndefined;
-}
-
 vk::ImageType type_of(rhi::TextureDimension dimension) {
   switch (dimension) {
     case rhi::TextureDimension::d1:
+    case rhi::TextureDimension::d1_array:
       return vk::ImageType::e1D;
     case rhi::TextureDimension::d3:
       return vk::ImageType::e3D;
@@ -60,22 +24,9 @@ vk::ImageType type_of(rhi::TextureDimension dimension) {
   }
 }
 
-vk::ImageViewType view_type_of(rhi::TextureDimension dimension) {
-  switch (dimension) {
-    case rhi::TextureDimension::d1:
-      return vk::ImageViewType::e1D;
-    case rhi::TextureDimension::d3:
-      return vk::ImageViewType::e3D;
-    case rhi::TextureDimension::d2_array:
-      return vk::ImageViewType::e2DArray;
-    default:
-      return vk::ImageViewType::e2D;
-  }
-}
+vk::ImageViewType view_type_of(rhi::TextureDimension dimension) { return static_cast<vk::ImageViewType>(dimension); }
 
-std::uint32_t layers_of(const rhi::TextureDesc& desc) {
-  return desc.dimension == rhi::TextureDimension::d2_array ? desc.size[2] : 1;
-}
+std::uint32_t layers_of(const rhi::TextureDesc& desc) { return rhi::is_layered(desc.dimension) ? desc.size[2] : 1; }
 
 vk::Extent3D extent_of(const rhi::TextureDesc& desc) {
   return {.width = desc.size[0],

@@ -68,21 +68,27 @@ void check(const QueryPoolDesc& desc) {
 }
 
 void check(const TextureDesc& desc, const DeviceInfo& device) {
-  constexpr std::uint32_t side_count[] = {1, 2, 3, 2};
-  const auto dimension = static_cast<std::size_t>(desc.dimension);
+  const std::uint32_t sides = side_count(desc.dimension);
   const Limits& limits = device.limits;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint32_t size = desc.size[i];
     require(size > 0, desc.label, "a texture of size 0 in dimension " + to_string(i));
-    const bool is_layers = desc.dimension == TextureDimension::d2_array && i == 2;
-    if (is_layers)
+    if (i == 2 && is_layered(desc.dimension))
       require_limit(size, limits.max_texture_layers, desc.label, "layers of a texture");
-    else if (i < side_count[dimension])
-      require_limit(size, limits.max_texture_size[dimension], desc.label, "texels along a side of a texture");
+    else if (i < sides)
+      require_limit(size, limits.max_texture_size[static_cast<std::size_t>(desc.dimension)], desc.label,
+                    "texels along a side of a texture");
     else
       require(size == 1, desc.label,
               "a texture has size " + to_string(size) + " in dimension " + to_string(i) + ", which its kind lacks");
   }
+  if (desc.dimension == TextureDimension::cube || desc.dimension == TextureDimension::cube_array) {
+    require(desc.size[0] == desc.size[1], desc.label, "the faces of a cube are not square");
+    require(desc.dimension == TextureDimension::cube ? desc.size[2] == 6 : desc.size[2] % 6 == 0, desc.label,
+            to_string(desc.size[2]) + " layers, where a cube has 6");
+  }
+  require(desc.level_count > 0, desc.label, "a texture needs at least one level");
+  require_limit(desc.level_count, full_level_count(desc), desc.label, "levels of a texture of this size");
 }
 
 void check(const DispatchDesc& desc, const DeviceInfo& device) {

@@ -56,7 +56,7 @@ void check_interface(const PipelineInterface& interface, const std::string& labe
     require(binding.set < limits.max_bind_groups, label,
             "the shader uses descriptor set " + to_string(binding.set) + ", but the device has " +
                 to_string(limits.max_bind_groups));
-    if (binding.kind == BindingKind::sampled_image || binding.kind == BindingKind::sampler)
+    if (binding.kind >= BindingKind::sampled_image)
       throw Error(
           ErrorCode::unsupported, label,
           "the shader binds '" + binding.name + "', a sampled image or a sampler, which bind groups cannot hold");

@@ -8,21 +8,77 @@
 namespace tandem::kernel {
 
 /// Raised whenever something in kernel/ changes that a compiled kernel depends on.
-inline constexpr std::uint32_t abi_version = 2;
+inline constexpr std::uint32_t abi_version = 3;
 
 /// One element of one binding. A buffer: its bytes. An acceleration structure: `data` points at a kernel::TopLevel, or
-/// is null for one that no ray meets. A storage image: `data` points at a kernel::Image.
+/// is null for one that no ray meets. An image or a texel buffer: `data` points at a kernel::Image, a sampler: at a
+/// kernel::Sampler, both in one: at a kernel::SampledImage. `data` is null where nothing is bound.
 struct Resource {
   std::byte* data = nullptr;
-  std::uint64_t size = 0;  ///< bytes bound; 0 for an acceleration structure or image
+  std::uint64_t size = 0;  ///< bytes bound; 0 for what is no buffer
 };
 
-/// Texels of a storage image, tightly packed: x fastest, then y, then z or the layer. How one is encoded the shader
-/// knows (the format of the texture is checked against it when it is bound).
+/// The most levels that an image has: a side of 2^15 texels.
+inline constexpr std::uint32_t max_image_levels = 16;
+
+/// Texels of an image, or of a texel buffer, which is an image of one dimension. A level is tightly packed: x fastest,
+/// then y, then z, then layers and the six faces of a cube, which are layers.
 struct Image {
   std::byte* texels = nullptr;
+  /// Of level 0: its sides, then its layers (of a 1D array in size[1], else in size[2]); 1 where it has none.
   std::uint32_t size[3] = {1, 1, 1};
-  std::uint32_t format = 0;  ///< rhi::TextureFormat, for shaders that name none
+  std::uint32_t format = 0;                            ///< rhi::TextureFormat
+  std::uint32_t sides = 3;                             ///< how many of `size` are halved from level to level
+  std::uint32_t level_count = 1;                       ///< at least 1
+  std::uint64_t level_offsets[max_image_levels] = {};  ///< of a level from `texels`, in bytes
+};
+
+/// The numbers of Vulkan's enumerations of the same names.
+enum class Filter : std::uint32_t { nearest, linear };
+enum class AddressMode : std::uint32_t {
+  repeat,
+  mirrored_repeat,
+  clamp_to_edge,
+  clamp_to_border,
+  mirror_clamp_to_edge
+};
+enum class CompareOp : std::uint32_t {
+  never,
+  less,
+  equal,
+  less_or_equal,
+  greater,
+  not_equal,
+  greater_or_equal,
+  always
+};
+enum class BorderColor : std::uint32_t {
+  float_transparent_black,
+  int_transparent_black,
+  float_opaque_black,
+  int_opaque_black,
+  float_opaque_white,
+  int_opaque_white
+};
+
+/// VkSamplerCreateInfo, without anisotropy.
+struct Sampler {
+  Filter magnification = Filter::nearest;
+  Filter minification = Filter::nearest;
+  Filter mipmap = Filter::nearest;
+  AddressMode address[3] = {AddressMode::repeat, AddressMode::repeat, AddressMode::repeat};  ///< u, v, w
+  float lod_bias = 0.0f;
+  float min_lod = 0.0f;
+  float max_lod = 1000.0f;  ///< VK_LOD_CLAMP_NONE
+  CompareOp compare = CompareOp::never;
+  BorderColor border = BorderColor::float_transparent_black;
+  std::uint32_t unnormalized = 0;  ///< coordinates are texels
+};
+
+/// A combined image sampler, and what a shader makes of an image and a sampler.
+struct SampledImage {
+  const Image* image = nullptr;
+  const Sampler* sampler = nullptr;
 };
 
 /// One run of a kernel.
@@ -32,7 +88,18 @@ struct Dispatch {
   std::uint32_t workgroup_count[3] = {1, 1, 1};
 };
 
-enum class ResourceKind : std::uint32_t { uniform_buffer, storage_buffer, acceleration_structure, storage_image };
+/// rhi::BindingKind.
+enum class ResourceKind : std::uint32_t {
+  uniform_buffer,
+  storage_buffer,
+  acceleration_structure,
+  storage_image,
+  sampled_image,
+  sampler,
+  combined_image_sampler,
+  uniform_texel_buffer,
+  storage_texel_buffer
+};
 
 /// rhi::ShaderStage.
 enum class Stage : std::uint32_t { compute, ray_generation, any_hit, closest_hit, miss, intersection, callable };

@@ -15,10 +15,30 @@ namespace tandem::kernel {
 
 /// rhi::TextureFormat, and what a shader says that names none.
 enum class TexelFormat : std::uint32_t {
+  r8_unorm,
+  r8_snorm,
+  r8_uint,
+  r8_sint,
+  rg8_unorm,
+  rg8_snorm,
+  rg8_uint,
+  rg8_sint,
   rgba8_unorm,
   rgba8_snorm,
   rgba8_uint,
   rgba8_sint,
+  r16_unorm,
+  r16_snorm,
+  r16_uint,
+  r16_sint,
+  r16_float,
+  rg16_unorm,
+  rg16_snorm,
+  rg16_uint,
+  rg16_sint,
+  rg16_float,
+  rgba16_unorm,
+  rgba16_snorm,
   rgba16_uint,
   rgba16_sint,
   rgba16_float,
@@ -31,14 +51,23 @@ enum class TexelFormat : std::uint32_t {
   rgba32_uint,
   rgba32_sint,
   rgba32_float,
+  r64_uint,
+  r64_sint,
+  rgb10a2_unorm,
+  rgb10a2_uint,
+  rg11b10_float,
+  rgba8_srgb,
+  bgra8_unorm,
+  d16_unorm,
+  d32_float,
   of_the_image  ///< Image::format decides, when the shader runs
 };
 
-constexpr std::uint32_t bytes_of(TexelFormat format) {
-  if (format >= TexelFormat::rgba32_uint) return 16;
-  if (format >= TexelFormat::rg32_uint) return 8;
-  return format >= TexelFormat::rgba16_uint && format <= TexelFormat::rgba16_float ? 8 : 4;
-}
+/// Bytes of a texel of each TexelFormat.
+inline constexpr std::uint8_t texel_sizes[] = {1, 1, 1, 1, 2, 2, 2, 2, 4, 4, 4,  4,  2,  2, 2, 2, 2, 4, 4, 4, 4, 4, 8,
+                                               8, 8, 8, 8, 4, 4, 4, 8, 8, 8, 16, 16, 16, 8, 8, 4, 4, 4, 4, 4, 2, 4};
+
+constexpr std::uint32_t bytes_of(TexelFormat format) { return texel_sizes[static_cast<std::uint32_t>(format)]; }
 
 /// Components of type Stored, of which a texel has `count`, as the four of a value: (0, 0, 0, 1) where it has none.
 template <typename C, typename Stored, int count>

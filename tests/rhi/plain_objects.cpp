@@ -103,7 +103,7 @@ rhi::DeviceInfo able_device() {
                      .max_shader_record_stride = 4096,
                      .shader_handle_size = 32,
                      .max_hit_attribute_size = 32,
-                     .max_texture_size = {4096, 4096, 256, 4096},
+                     .max_texture_size = {4096, 4096, 256, 4096, 4096, 4096, 4096},
                      .max_texture_layers = 256}};
 }
 

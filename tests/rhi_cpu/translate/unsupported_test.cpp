@@ -56,10 +56,6 @@ TEST_CASE("the empty module is supported") { tandem::cpu::translate(assemble(mod
 TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
   check_glsl("layout(binding = 0, rgba8) uniform image2DMS i; void main() { imageStore(i, ivec2(0), 0, vec4(0)); }",
              "capability StorageImageMultisample is not supported");
-  check_glsl("layout(binding = 0, r8) uniform image2D i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
-             "image format R8, ");
-  check_glsl("layout(binding = 0, r8ui) uniform uimage2D i; void main() { imageStore(i, ivec2(0), uvec4(0)); }",
-             "image format R8ui, ");
   check_glsl("layout(binding = 0, rgba8) uniform imageCube i; void main() { imageStore(i, ivec3(0), vec4(0)); }",
              "OpTypeImage of dimension Cube is not supported");
   check_glsl("layout(binding = 0, rgba8) uniform image1DArray i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
