@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -9,13 +10,39 @@
 #include "rhi/acceleration_structure.hpp"
 #include "rhi/buffer.hpp"
 #include "rhi/pipeline.hpp"
+#include "rhi/sampler.hpp"
 #include "rhi/texture.hpp"
 
 namespace tandem::rhi {
 
-/// What one descriptor refers to: a buffer range, a built top level, or a texture. A null AccelerationStructureHandle
-/// is a structure that no ray meets, where the device has Capabilities::null_acceleration_structure.
-using BoundResource = std::variant<BufferRange, AccelerationStructureHandle, TextureHandle>;
+/// A texture, or some of its levels and layers. A storage image is one level.
+struct TextureView {
+  TextureHandle texture = {};
+  std::uint32_t first_level = 0;
+  std::uint32_t level_count = 0;  ///< 0: all from first_level on; for a storage image: one
+  std::uint32_t first_layer = 0;
+  std::uint32_t layer_count = 0;  ///< 0: all from first_layer on
+  /// What the shader sees, where it is another than the texture's: 2D textures, arrays and cubes may be seen as each
+  /// other, 1D textures and their arrays too.
+  std::optional<TextureDimension> dimension = {};
+};
+
+/// A texture view with the sampler that reads it: a combined image sampler.
+struct SampledTexture {
+  TextureView view;
+  SamplerHandle sampler = {};
+};
+
+/// A buffer as texels: a samplerBuffer, textureBuffer or imageBuffer. The range holds whole texels.
+struct TexelBuffer {
+  BufferRange range = {};
+  TextureFormat format = TextureFormat::r32_float;
+};
+
+/// What one descriptor refers to. A null AccelerationStructureHandle is a structure that no ray meets, where the
+/// device has Capabilities::null_acceleration_structure. A TextureHandle is a TextureView of all of it.
+using BoundResource = std::variant<BufferRange, AccelerationStructureHandle, TextureHandle, TextureView, SamplerHandle,
+                                   SampledTexture, TexelBuffer>;
 
 struct BindGroupEntry {
   std::uint32_t binding = 0;
@@ -23,7 +50,8 @@ struct BindGroupEntry {
   std::uint32_t array_element = 0;
 };
 
-/// The resources of one descriptor set of a pipeline: every element of every binding that the shader uses, once.
+/// The resources of one descriptor set of a pipeline: every binding that the shader uses, once. Elements of an array
+/// may be left out where the device has Capabilities::partially_bound; then no invocation may use them.
 struct BindGroupDesc {
   PipelineHandle pipeline;
   std::uint32_t set = 0;

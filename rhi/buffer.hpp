@@ -15,7 +15,9 @@ enum class BufferUsage : std::uint32_t {
   uniform = 1 << 1,                       ///< uniform buffer in a bind group
   acceleration_structure_input = 1 << 2,  ///< vertices, indices, boxes, transforms or instances of a build
   device_address = 1 << 3,                ///< device_address() may be called, and shaders may use the address
-  indirect = 1 << 4                       ///< TraceRaysDesc::indirect_size
+  indirect = 1 << 4,                      ///< DispatchDesc::indirect_count and TraceRaysDesc::indirect_size
+  uniform_texels = 1 << 5,                ///< a TexelBuffer that shaders only read
+  storage_texels = 1 << 6                 ///< a TexelBuffer that shaders write
 };
 template <>
 inline constexpr bool is_flags<BufferUsage> = true;

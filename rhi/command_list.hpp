@@ -25,6 +25,12 @@ struct DispatchDesc {
   std::vector<BindGroupHandle> bind_groups;                  ///< in any order, one for each set that the shader uses
   std::span<const std::byte> push_constants = {};            ///< exactly the size that the shader declares; copied
   std::array<std::uint32_t, 3> workgroup_count = {1, 1, 1};  ///< a zero makes the dispatch do nothing
+  /// The first workgroup's id, from which the others are counted (gl_WorkGroupID); gl_NumWorkGroups stays
+  /// workgroup_count. vkCmdDispatchBase.
+  std::array<std::uint32_t, 3> base_workgroup = {0, 0, 0};
+  /// Not empty: three uint32 that are read as workgroup_count when the command executes; base_workgroup is zero. The
+  /// buffer has the usage indirect, and the offset is a multiple of 4.
+  BufferRange indirect_count = {};
 };
 
 /// One run of a ray generation shader: size[0] * [1] * [2] invocations.
@@ -42,8 +48,9 @@ struct TraceRaysDesc {
   BufferRange indirect_size;
 };
 
-/// Commands recorded to be submitted once. They take effect as if each began after the one before it had ended and its
-/// writes were visible: barriers are the backend's business. What a command names is kept alive until it has executed.
+/// Commands recorded to be submitted, once or more often; nothing can be added after the first time. They take effect
+/// as if each began after the one before it had ended and its writes were visible: barriers are the backend's business.
+/// What a command names is kept alive as long as the list, and until it has executed.
 class CommandList {
  public:
   virtual ~CommandList() = default;
@@ -58,7 +65,8 @@ class CommandList {
   virtual void copy(const BufferRange& source, const BufferRange& destination) = 0;
   /// Writes the 32 bits of `value` over the range; offset and size are multiples of 4.
   virtual void fill(const BufferRange& range, std::uint32_t value) = 0;
-  /// All texels, tightly packed (Texture::size_in_bytes); the range is that large, its offset a multiple of 16.
+  /// All levels, one behind the other as Texture::size_in_bytes says; the range is that large, its offset a multiple of
+  /// 16.
   virtual void copy_to_texture(const BufferRange& source, const TextureHandle& destination) = 0;
   virtual void copy_from_texture(const TextureHandle& source, const BufferRange& destination) = 0;
 

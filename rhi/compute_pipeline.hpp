@@ -13,6 +13,8 @@ namespace tandem::rhi {
 struct ComputePipelineDesc {
   ShaderModuleHandle shader;
   std::vector<SpecializationValue> specialization;  ///< constants that are not named keep their defaults
+  /// The most elements that a bind group gives to an array of descriptors without a length, such as textures[].
+  std::uint32_t unsized_array_length = usual_unsized_array_length;
   std::string label;
 };
 
@@ -24,7 +26,8 @@ class ComputePipeline : public Pipeline {
 
  protected:
   explicit ComputePipeline(ComputePipelineDesc desc)
-      : Pipeline(Kind::compute, desc.label, combined_interface({&desc.shader, 1}, desc.label)),
+      : Pipeline(Kind::compute, desc.label,
+                 combined_interface({&desc.shader, 1}, desc.label, desc.unsized_array_length)),
         desc_(std::move(desc)) {}
 
  private:

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "rhi/acceleration_structure.hpp"
 #include "rhi/bind_group.hpp"
@@ -18,6 +19,7 @@
 #include "rhi/message.hpp"
 #include "rhi/query_pool.hpp"
 #include "rhi/ray_tracing_pipeline.hpp"
+#include "rhi/sampler.hpp"
 #include "rhi/shader_module.hpp"
 #include "rhi/shader_table.hpp"
 #include "rhi/texture.hpp"
@@ -35,9 +37,15 @@ struct Capabilities {
   bool primitive_culling = false;     ///< ray flags SkipTriangles and SkipAABBs in pipelines; ray queries have them
   bool null_acceleration_structure = false;  ///< a bind group may hold a null AccelerationStructureHandle
   bool buffer_references = false;            ///< GL_EXT_buffer_reference, with Buffer::device_address
-  bool non_uniform_indexing = false;  ///< GL_EXT_nonuniform_qualifier on arrays of buffers, images and structures
-  bool scalar_block_layout = false;   ///< GL_EXT_scalar_block_layout
+  bool non_uniform_indexing = false;         ///< GL_EXT_nonuniform_qualifier on arrays of every kind of descriptor
+  bool unsized_arrays = false;               ///< arrays of descriptors without a length
+  bool partially_bound = false;              ///< a bind group may leave out elements of an array
+  bool cube_arrays = false;                  ///< samplerCubeArray, imageCubeArray
+  bool scalar_block_layout = false;          ///< GL_EXT_scalar_block_layout
+  bool shader_int8 = false;                  ///< arithmetic and storage buffers
+  bool shader_int16 = false;                 ///< likewise
   bool shader_int64 = false;
+  bool shader_float16 = false;  ///< arithmetic and storage buffers
   bool shader_float64 = false;
   bool timestamps = false;  ///< QueryPool
 };
@@ -48,6 +56,8 @@ struct Limits {
   std::uint64_t max_uniform_buffer_range = 16384;
   std::uint64_t storage_buffer_offset_alignment = 1;
   std::uint64_t uniform_buffer_offset_alignment = 1;
+  std::uint64_t texel_buffer_offset_alignment = 1;
+  std::uint64_t max_texel_buffer_elements = 1 << 16;
   std::array<std::uint32_t, 3> max_workgroup_size = {128, 128, 64};
   std::uint32_t max_workgroup_invocations = 128;
   std::array<std::uint32_t, 3> max_workgroup_count = {65535, 65535, 65535};
@@ -75,6 +85,7 @@ struct DeviceInfo {
   DeviceKind kind = DeviceKind::cpu;
   Capabilities capabilities;
   Limits limits;
+  std::array<FormatSupport, texture_format_count> formats = {};  ///< by TextureFormat
 };
 
 struct DeviceDesc {
@@ -106,7 +117,11 @@ class Device {
   virtual AccelerationStructureHandle create_compacted(const AccelerationStructureHandle& source,
                                                        std::string label) = 0;
   virtual TextureHandle create_texture(const TextureDesc& desc) = 0;
+  virtual SamplerHandle create_sampler(const SamplerDesc& desc) = 0;
   virtual ShaderModuleHandle create_shader_module(const ShaderModuleDesc& desc) = 0;
+  /// Every reason why a pipeline of the shader cannot be made here, each a sentence without a full stop; none where it
+  /// can. Compiles nothing.
+  virtual std::vector<std::string> refusals(const ShaderModuleHandle& shader) const = 0;
   virtual ComputePipelineHandle create_compute_pipeline(const ComputePipelineDesc& desc) = 0;
   virtual RayTracingPipelineHandle create_ray_tracing_pipeline(const RayTracingPipelineDesc& desc) = 0;
   virtual ShaderTableHandle create_shader_table(const ShaderTableDesc& desc) = 0;
@@ -114,7 +129,7 @@ class Device {
   virtual QueryPoolHandle create_query_pool(const QueryPoolDesc& desc) = 0;
   virtual CommandListHandle create_command_list(std::string label) = 0;
 
-  /// Executes the list once; submitting it again is an error. The CPU device has finished when this returns.
+  /// Executes the list, which can be submitted again. The CPU device has finished when this returns.
   virtual FenceHandle submit(const CommandListHandle& list) = 0;
   /// Waits until everything submitted has executed.
   virtual void wait_idle() = 0;

@@ -32,8 +32,10 @@ void add(PipelineInterface& interface, const ShaderBinding& binding, std::string
 
 }  // namespace
 
-PipelineInterface combined_interface(std::span<const ShaderModuleHandle> shaders, std::string_view label) {
+PipelineInterface combined_interface(std::span<const ShaderModuleHandle> shaders, std::string_view label,
+                                     std::uint32_t unsized_array_length) {
   PipelineInterface interface;
+  interface.unsized_array_length = unsized_array_length;
   for (const ShaderModuleHandle& shader : shaders) {
     const ShaderReflection& reflection = shader->reflection();
     for (const ShaderBinding& binding : reflection.bindings) add(interface, binding, shader->label(), label);

@@ -20,12 +20,22 @@ struct SpecializationValue {
 
 /// What the shaders of a pipeline bind, together.
 struct PipelineInterface {
-  std::vector<ShaderBinding> bindings;   ///< sorted by (set, binding), each once; writable where any shader writes
-  std::uint32_t push_constant_size = 0;  ///< bytes: the largest block of a shader; 0 without one
+  std::vector<ShaderBinding> bindings;     ///< sorted by (set, binding), each once; writable where any shader writes
+  std::uint32_t unsized_array_length = 0;  ///< most elements of the arrays without a length, whose count is 0
+  std::uint32_t push_constant_size = 0;    ///< bytes: the largest block of a shader; 0 without one
 };
 
+/// Elements that a bind group may give to an array of descriptors without a length, unless a pipeline says more.
+inline constexpr std::uint32_t usual_unsized_array_length = 1024;
+
 /// Throws Error(invalid_argument), in the name of `label`, when two shaders declare a binding differently.
-PipelineInterface combined_interface(std::span<const ShaderModuleHandle> shaders, std::string_view label);
+PipelineInterface combined_interface(std::span<const ShaderModuleHandle> shaders, std::string_view label,
+                                     std::uint32_t unsized_array_length = usual_unsized_array_length);
+
+/// The most elements of a binding.
+inline std::uint32_t capacity(const PipelineInterface& interface, const ShaderBinding& binding) {
+  return binding.count != 0 ? binding.count : interface.unsized_array_length;
+}
 
 /// What compute and ray tracing pipelines have in common: bind groups are made for it.
 class Pipeline {

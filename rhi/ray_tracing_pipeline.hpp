@@ -33,6 +33,8 @@ struct RayTracingPipelineDesc {
   std::uint32_t max_recursion_depth = 1;
   /// Given to every shader that declares the constant; each id must be declared by one.
   std::vector<SpecializationValue> specialization;
+  /// The most elements that a bind group gives to an array of descriptors without a length, such as textures[].
+  std::uint32_t unsized_array_length = usual_unsized_array_length;
   std::string label;
 };
 
@@ -46,7 +48,8 @@ class RayTracingPipeline : public Pipeline {
 
  protected:
   explicit RayTracingPipeline(RayTracingPipelineDesc desc)
-      : Pipeline(Kind::ray_tracing, desc.label, combined_interface(shaders_of(desc), desc.label)),
+      : Pipeline(Kind::ray_tracing, desc.label,
+                 combined_interface(shaders_of(desc), desc.label, desc.unsized_array_length)),
         desc_(std::move(desc)) {}
 
  private:

@@ -17,9 +17,10 @@ struct ShaderModuleDesc {
   /// The words have passed the validator before, as those of a program's own shaders when it was built: they are not
   /// validated again, which takes tenths of a second for large ones. Others may crash the program.
   bool known_valid = false;
+  std::string entry_point = {};  ///< of a module that has several; "": the only one
 };
 
-/// A SPIR-V module with one entry point, and what reflection says of it.
+/// A SPIR-V module of one entry point (of several, the others are removed), and what reflection says of it.
 class ShaderModule {
  public:
   virtual ~ShaderModule() = default;
@@ -32,10 +33,7 @@ class ShaderModule {
 
  protected:
   /// Copies the words and reflects them. Throws Error(invalid_argument) when they are no SPIR-V module.
-  explicit ShaderModule(const ShaderModuleDesc& desc)
-      : label_(desc.label),
-        spirv_(desc.spirv.begin(), desc.spirv.end()),
-        reflection_(desc.known_valid ? reflect_valid(spirv_, label_) : reflect(spirv_, label_)) {}
+  explicit ShaderModule(const ShaderModuleDesc& desc);
 
  private:
   std::string label_;

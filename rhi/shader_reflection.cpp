@@ -172,11 +172,11 @@ class Reflector {
     add_images(resources.sampled_images, BindingKind::combined_image_sampler, BindingKind::uniform_texel_buffer);
     add_images(resources.separate_images, BindingKind::sampled_image, BindingKind::uniform_texel_buffer);
     add(resources.separate_samplers, BindingKind::sampler);
-    std::sort(result_.bindings.begin(), result_.bindings.end(), [](const ShaderBinding& a, const ShaderBinding& b) {
-      return std::tie(a.set, a.binding) < std::tie(b.set, b.binding);
-    });
-    for (std::size_t i = 1; i < result_.bindings.size(); ++i)
-      refuse_alias(result_.bindings[i - 1], result_.bindings[i]);
+    std::stable_sort(result_.bindings.begin(), result_.bindings.end(),
+                     [](const ShaderBinding& a, const ShaderBinding& b) {
+                       return std::tie(a.set, a.binding) < std::tie(b.set, b.binding);
+                     });
+    merge_aliases();
 
     for (const spirv_cross::Resource& block : resources.push_constant_buffers)
       result_.push_constant_size =
@@ -198,11 +198,23 @@ class Reflector {
                   std::string("the shader declares ") + what + ", " + resources[0].name);
   }
 
-  void refuse_alias(const ShaderBinding& a, const ShaderBinding& b) const {
-    if (a.set == b.set && a.binding == b.binding)
-      throw Error(ErrorCode::unsupported, label_,
-                  "two variables share set " + std::to_string(a.set) + " binding " + std::to_string(a.binding) + ": " +
-                      a.name + " and " + b.name);
+  /// Several variables may view one binding, each with a block of its own.
+  void merge_aliases() {
+    std::vector<ShaderBinding> merged;
+    for (ShaderBinding& each : result_.bindings) {
+      if (merged.empty() || merged.back().set != each.set || merged.back().binding != each.binding) {
+        merged.push_back(std::move(each));
+        continue;
+      }
+      ShaderBinding& first = merged.back();
+      if (first.kind != each.kind || first.count != each.count || first.dimension != each.dimension ||
+          first.format != each.format)
+        throw Error(ErrorCode::unsupported, label_,
+                    "two variables of different kinds share set " + std::to_string(each.set) + " binding " +
+                        std::to_string(each.binding) + ": " + first.name + " and " + each.name);
+      first.writable = first.writable || each.writable;
+    }
+    result_.bindings = std::move(merged);
   }
 
   ShaderBinding binding_of(const spirv_cross::Resource& resource, BindingKind kind) const {
@@ -243,9 +255,6 @@ class Reflector {
     std::uint32_t count = 1;
     for (std::size_t i = 0; i < type.array.size(); ++i) {
       const std::uint32_t length = type.array_size_literal[i] ? type.array[i] : constant_value(type.array[i]);
-      if (length == 0)
-        throw Error(ErrorCode::unsupported, label_,
-                    "the shader declares " + resource.name + " as an array of descriptors without a length");
       count *= length;
     }
     return count;

@@ -30,7 +30,7 @@ enum class BindingKind {
 struct ShaderBinding {
   std::uint32_t set = 0;
   std::uint32_t binding = 0;
-  std::uint32_t count = 1;  ///< array length
+  std::uint32_t count = 1;  ///< array length; 0: an array without a length
   BindingKind kind = BindingKind::storage_buffer;
   bool writable = false;                              ///< a storage buffer, image or texel buffer without NonWritable
   TextureDimension dimension = TextureDimension::d2;  ///< of an image

@@ -5,40 +5,30 @@
 #include <vector>
 
 #include <spirv-tools/libspirv.hpp>
-#include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi/spirv_words.hpp"
 
 namespace tandem::rhi {
 namespace {
-
-constexpr std::size_t header_words = 5;
 
 void require(bool holds, std::string_view label, const std::string& otherwise) {
   if (!holds) throw Error(ErrorCode::invalid_argument, label, otherwise);
 }
 
-spv::Op operation(std::span<const std::uint32_t> instruction) { return static_cast<spv::Op>(instruction[0] & 0xffff); }
-
-/// Calls visit(instruction) for each instruction of words that check_spirv_words has passed.
-template <typename Visit>
-void for_each_instruction(std::span<const std::uint32_t> words, const Visit& visit) {
-  for (std::size_t i = header_words; i < words.size(); i += words[i] >> 16) visit(words.subspan(i, words[i] >> 16));
-}
-
 /// The module without OpLine and OpNoLine, whose own rule is checked here: the validator takes time that grows with the
 /// square of their number (eight times as long for the path tracer).
 std::vector<std::uint32_t> without_lines(std::span<const std::uint32_t> words, std::string_view label) {
-  std::vector<std::uint32_t> result(words.begin(), words.begin() + header_words);
+  std::vector<std::uint32_t> result(words.begin(), words.begin() + spirv_header_words);
   result.reserve(words.size());
   std::unordered_set<std::uint32_t> strings;
   for_each_instruction(words, [&](std::span<const std::uint32_t> i) {
-    if (operation(i) == spv::OpLine) {
+    if (operation_of(i) == spv::OpLine) {
       require(i.size() == 4 && strings.contains(i[1]), label, "the SPIR-V is not valid: OpLine names no file");
       return;
     }
-    if (operation(i) == spv::OpNoLine && i.size() == 1) return;
-    if (operation(i) == spv::OpString && i.size() > 2) strings.insert(i[1]);
+    if (operation_of(i) == spv::OpNoLine && i.size() == 1) return;
+    if (operation_of(i) == spv::OpString && i.size() > 2) strings.insert(i[1]);
     result.insert(result.end(), i.begin(), i.end());
   });
   return result;
@@ -57,9 +47,9 @@ std::string sentence(std::string_view message) {
 }  // namespace
 
 void check_spirv_words(std::span<const std::uint32_t> words, std::string_view label) {
-  require(words.size() >= header_words && words[0] == spv::MagicNumber, label,
+  require(words.size() >= spirv_header_words && words[0] == spv::MagicNumber, label,
           "the shader is not SPIR-V: its first word is not the magic number");
-  for (std::size_t i = header_words; i < words.size();) {
+  for (std::size_t i = spirv_header_words; i < words.size();) {
     const std::size_t length = words[i] >> 16;
     require(length > 0 && length <= words.size() - i, label,
             "the SPIR-V is not valid: the instruction at word " + std::to_string(i) + " has " + std::to_string(length) +

@@ -38,10 +38,15 @@ std::uint32_t full_level_count(const TextureDesc& desc) {
   return static_cast<std::uint32_t>(std::bit_width(largest));
 }
 
+std::uint64_t level_offset(const TextureDesc& desc, std::uint32_t level) {
+  std::uint64_t offset = 0;
+  for (std::uint32_t i = 0; i < level; ++i) offset += (level_size_in_bytes(desc, i) + 3) / 4 * 4;
+  return offset;
+}
+
 std::uint64_t Texture::size_in_bytes() const noexcept {
-  std::uint64_t size = 0;
-  for (std::uint32_t level = 0; level < desc_.level_count; ++level) size += level_size_in_bytes(desc_, level);
-  return size;
+  const std::uint32_t last = desc_.level_count - 1;
+  return level_offset(desc_, last) + level_size_in_bytes(desc_, last);
 }
 
 }  // namespace tandem::rhi

@@ -30,6 +30,8 @@ bool is_layered(TextureDimension dimension);
 std::array<std::uint32_t, 3> level_size(const TextureDesc& desc, std::uint32_t level);
 /// Bytes of a level, tightly packed: x fastest, then y, then z or the layer.
 std::uint64_t level_size_in_bytes(const TextureDesc& desc, std::uint32_t level);
+/// Where a level begins behind those before it, at a multiple of 4 bytes.
+std::uint64_t level_offset(const TextureDesc& desc, std::uint32_t level);
 /// The most levels of a texture of this size.
 std::uint32_t full_level_count(const TextureDesc& desc);
 
@@ -42,7 +44,7 @@ class Texture {
   Texture& operator=(const Texture&) = delete;
 
   const TextureDesc& desc() const noexcept { return desc_; }
-  /// Of all levels, one behind the other, each tightly packed.
+  /// Of all levels, each tightly packed and beginning at level_offset().
   std::uint64_t size_in_bytes() const noexcept;
 
  protected:

@@ -33,6 +33,16 @@ BufferHandle create_filled(Device& device, const Values& values, BufferUsage usa
   return create_filled(device, std::span<const std::byte>(std::as_bytes(std::span(values))), usage, label);
 }
 
+/// A new texture of these bytes: all levels, as Texture::size_in_bytes says. Not waited for.
+TextureHandle create_filled(Device& device, std::span<const std::byte> bytes, const TextureDesc& desc);
+template <std::ranges::contiguous_range Values>
+TextureHandle create_filled(Device& device, const Values& values, const TextureDesc& desc) {
+  return create_filled(device, std::span<const std::byte>(std::as_bytes(std::span(values))), desc);
+}
+
+/// Waits for everything submitted, then reads all levels of the texture.
+std::vector<std::byte> read(Device& device, const TextureHandle& texture);
+
 /// Waits for everything submitted, then reads `count` T from byte `offset` of the buffer on.
 template <typename T>
 std::vector<T> read(Device& device, const BufferHandle& buffer, std::size_t count, std::uint64_t offset = 0) {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "rhi/device.hpp"
 
@@ -16,8 +18,12 @@ void check(const ComputePipelineDesc& desc, const DeviceInfo& device);
 void check(const RayTracingPipelineDesc& desc, const DeviceInfo& device);
 void check(const ShaderTableDesc& desc, const DeviceInfo& device);
 void check(const TextureDesc& desc, const DeviceInfo& device);
+void check(const SamplerDesc& desc);
 void check(const BindGroupDesc& desc, const DeviceInfo& device);
 void check(const QueryPoolDesc& desc);
+/// What of a shader's interface no pipeline of the device can have, each as a sentence without a full stop: the part of
+/// Device::refusals that does not depend on the backend.
+std::vector<std::string> refusals(const ShaderModuleHandle& shader, const DeviceInfo& device);
 void check(const DispatchDesc& desc, const DeviceInfo& device);
 void check(const TraceRaysDesc& desc, const DeviceInfo& device);
 /// Commands of a list: `list` is named in the error.

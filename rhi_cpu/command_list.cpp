@@ -47,23 +47,40 @@ std::shared_ptr<Structure> own_buildable(const rhi::AccelerationStructureHandle&
   return built;
 }
 
+using Size = std::array<std::uint32_t, 3>;
+
 void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGroup>> groups,
-         std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& workgroup_count,
-         Workers& workers) {
+         std::span<const std::byte> push_constants, const Size& workgroup_count, const Size& base, Workers& workers) {
   const kernel::KernelInfo& kernel = pipeline.kernel();
-  const std::vector<kernel::Resource> resources = resource_table(kernel, groups, pipeline.label());
-  const kernel::Dispatch dispatch{.resources = resources.data(),
+  const ResourceTable table = resource_table(kernel, groups, pipeline.label());
+  const kernel::Dispatch dispatch{.resources = table.resources.data(),
                                   .push_constants = push_constants.data(),
-                                  .workgroup_count = {workgroup_count[0], workgroup_count[1], workgroup_count[2]}};
+                                  .workgroup_count = {workgroup_count[0], workgroup_count[1], workgroup_count[2]},
+                                  .base_workgroup = {base[0], base[1], base[2]}};
   const std::uint64_t count = std::uint64_t{workgroup_count[0]} * workgroup_count[1] * workgroup_count[2];
   workers.for_each_range(count, [&](std::uint64_t first, std::uint64_t end) { kernel.run(dispatch, first, end); });
 }
 
-/// The size that a shader or an upload left in the buffer. Throws Error where it is beyond the device's limit.
-std::array<std::uint32_t, 3> indirect_size(const Buffer& buffer, std::uint64_t offset, const rhi::Limits& limits,
-                                           const std::string& label) {
-  std::array<std::uint32_t, 3> size;
+Size read_size(const Buffer& buffer, std::uint64_t offset) {
+  Size size;
   std::memcpy(size.data(), buffer.data() + offset, sizeof(size));
+  return size;
+}
+
+/// The count that a shader or an upload left in the buffer. Throws Error where it is beyond the device's limit.
+Size indirect_count(const Buffer& buffer, std::uint64_t offset, const rhi::Limits& limits, const std::string& label) {
+  const Size count = read_size(buffer, offset);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (count[i] > limits.max_workgroup_count[i])
+      throw rhi::Error(rhi::ErrorCode::invalid_argument, label,
+                       fmt::format("an indirect dispatch of {} workgroups in dimension {}, of which the device has {}",
+                                   count[i], i, limits.max_workgroup_count[i]));
+  return count;
+}
+
+/// Likewise, of a trace.
+Size indirect_size(const Buffer& buffer, std::uint64_t offset, const rhi::Limits& limits, const std::string& label) {
+  const Size size = read_size(buffer, offset);
   std::uint64_t rest = limits.max_ray_invocations;
   for (const std::uint32_t side : size) {
     if (side == 0) return {0, 0, 0};
@@ -161,11 +178,17 @@ void CommandList::update_top_level(const rhi::AccelerationStructureHandle& struc
 void CommandList::dispatch(const rhi::DispatchDesc& desc) {
   rhi::validation::check(desc, device_->info);
   const std::string& label = desc.pipeline->label();
+  std::shared_ptr<Buffer> indirect;
+  if (!desc.indirect_count.empty()) indirect = own_buffer(desc.indirect_count.buffer, *device_);
   record([pipeline = own<ComputePipeline>(desc.pipeline, *device_, label),
           groups = own_groups(desc.bind_groups, *device_, label),
           push_constants = std::vector<std::byte>(desc.push_constants.begin(), desc.push_constants.end()),
-          count = desc.workgroup_count,
-          &workers = device_->workers] { run(*pipeline, groups, push_constants, count, workers); });
+          count = desc.workgroup_count, base = desc.base_workgroup, indirect, offset = desc.indirect_count.offset,
+          device = device_] {
+    const Size dispatched =
+        indirect == nullptr ? count : indirect_count(*indirect, offset, device->info.limits, pipeline->label());
+    run(*pipeline, groups, push_constants, dispatched, base, device->workers);
+  });
 }
 
 void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
@@ -181,7 +204,7 @@ void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
           groups = own_groups(desc.bind_groups, *device_, label),
           push_constants = std::vector<std::byte>(desc.push_constants.begin(), desc.push_constants.end()),
           size = desc.size, indirect, offset = desc.indirect_size.offset, device = device_] {
-    const std::array<std::uint32_t, 3> launched =
+    const Size launched =
         indirect == nullptr ? size : indirect_size(*indirect, offset, device->info.limits, table->pipeline().label());
     cpu::trace_rays(*table, first, groups, push_constants, launched, device->workers);
   });
@@ -193,10 +216,8 @@ void CommandList::write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_
 }
 
 void CommandList::execute() {
-  if (std::exchange(submitted_, true))
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "the list is submitted a second time");
-  const std::vector<std::function<void()>> commands = std::exchange(commands_, {});
-  for (const std::function<void()>& command : commands) command();
+  submitted_ = true;
+  for (const std::function<void()>& command : commands_) command();
 }
 
 }  // namespace tandem::cpu

@@ -29,7 +29,7 @@ class CommandList final : public rhi::CommandList {
   void write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) override;
 
   const DeviceState& device() const noexcept { return *device_; }
-  /// Runs the commands and releases what they name, also when one of them throws. A second call throws Error.
+  /// Runs the commands. Nothing can be recorded afterwards, also when one of them throws.
   void execute();
 
  private:

@@ -18,9 +18,11 @@
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/query_pool.hpp"
 #include "rhi_cpu/ray_tracing_pipeline.hpp"
+#include "rhi_cpu/sampler.hpp"
 #include "rhi_cpu/shader_module.hpp"
 #include "rhi_cpu/shader_table.hpp"
 #include "rhi_cpu/texture.hpp"
+#include "rhi_cpu/translate/supported.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -70,6 +72,18 @@ class Device final : public rhi::Device {
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
     rhi::validation::check(desc, info());
     return std::make_shared<Texture>(state_, desc);
+  }
+
+  rhi::SamplerHandle create_sampler(const rhi::SamplerDesc& desc) override {
+    rhi::validation::check(desc);
+    return std::make_shared<Sampler>(state_, desc);
+  }
+
+  std::vector<std::string> refusals(const rhi::ShaderModuleHandle& shader) const override {
+    std::vector<std::string> reasons = rhi::validation::refusals(shader, info());
+    for (const std::string& feature : unsupported_features(shader->spirv(), shader->label()))
+      reasons.push_back(feature + " is not supported by the CPU device");
+    return reasons;
   }
 
   rhi::RayTracingPipelineHandle create_ray_tracing_pipeline(const rhi::RayTracingPipelineDesc& desc) override {
@@ -143,6 +157,8 @@ rhi::Limits limits() {
           // Kernels load and store through typed views, whose widest member has 16 bytes of alignment.
           .storage_buffer_offset_alignment = 16,
           .uniform_buffer_offset_alignment = 16,
+          .texel_buffer_offset_alignment = 16,
+          .max_texel_buffer_elements = 1u << 27,
           .max_workgroup_size = {1024, 1024, 1024},
           .max_workgroup_invocations = 1024,
           .max_workgroup_count = {0x7FFFFFFF, 65535, 65535},
@@ -158,6 +174,26 @@ rhi::Limits limits() {
           .max_hit_attribute_size = kernel::max_hit_attribute_size,
           .max_texture_size = {16384, 16384, 2048, 16384, 16384, 16384, 16384},
           .max_texture_layers = 2048};
+}
+
+std::array<rhi::FormatSupport, rhi::texture_format_count> format_support() {
+  std::array<rhi::FormatSupport, rhi::texture_format_count> formats;
+  for (std::size_t i = 0; i < formats.size(); ++i) {
+    const auto format = static_cast<rhi::TextureFormat>(i);
+    const rhi::ComponentKind kind = rhi::info_of(format).kind;
+    const bool is_integer = kind == rhi::ComponentKind::uint || kind == rhi::ComponentKind::sint;
+    // Those that SPIR-V has a name for.
+    const bool has_layout = format <= rhi::TextureFormat::rg11b10_float;
+    using enum rhi::TextureFormat;
+    formats[i] = {.storage = has_layout,
+                  .storage_atomic = format == r32_uint || format == r32_sint || format == r32_float ||
+                                    format == r64_uint || format == r64_sint,
+                  .sampled = true,
+                  .filtered = !is_integer,
+                  .uniform_texel_buffer = kind != rhi::ComponentKind::depth,
+                  .storage_texel_buffer = has_layout};
+  }
+  return formats;
 }
 
 }  // namespace
@@ -189,11 +225,18 @@ rhi::DeviceInfo device_info(std::string_view name) {
                            .null_acceleration_structure = true,
                            .buffer_references = true,
                            .non_uniform_indexing = true,
+                           .unsized_arrays = true,
+                           .partially_bound = true,
+                           .cube_arrays = true,
                            .scalar_block_layout = true,
+                           .shader_int8 = true,
+                           .shader_int16 = true,
                            .shader_int64 = true,
+                           .shader_float16 = true,
                            .shader_float64 = true,
                            .timestamps = true},
-          .limits = limits()};
+          .limits = limits(),
+          .formats = format_support()};
 }
 
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled) {

@@ -43,12 +43,13 @@ class Tiling {
 void trace_rays(const ShaderTable& table, const FirstRecords& first, std::span<const std::shared_ptr<BindGroup>> groups,
                 std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& size, Workers& workers) {
   const RayTracingPipeline& pipeline = table.pipeline();
-  std::vector<std::vector<kernel::Resource>> resources;
+  std::vector<ResourceTable> tables;
   std::vector<BoundShader> shaders;
   for (const Kernel& kernel : pipeline.kernels()) {
-    resources.push_back(resource_table(*kernel.info, groups, pipeline.label()));
-    shaders.push_back(
-        {.call = kernel.info->call, .resources = resources.back().data(), .payload_size = kernel.info->payload_size});
+    tables.push_back(resource_table(*kernel.info, groups, pipeline.label()));
+    shaders.push_back({.call = kernel.info->call,
+                       .resources = tables.back().resources.data(),
+                       .payload_size = kernel.info->payload_size});
   }
   const GeneralRecord& record = table.ray_generation()[first.ray_generation];
 

@@ -12,11 +12,8 @@ kernel::Image image_of(const rhi::TextureDesc& desc, std::byte* texels) {
                          .sides = rhi::side_count(desc.dimension),
                          .level_count = desc.level_count};
   if (desc.dimension == rhi::TextureDimension::d1_array) std::swap(image.size[1], image.size[2]);
-  std::uint64_t offset = 0;
-  for (std::uint32_t level = 0; level < desc.level_count; ++level) {
-    image.level_offsets[level] = offset;
-    offset += rhi::level_size_in_bytes(desc, level);
-  }
+  for (std::uint32_t level = 0; level < desc.level_count; ++level)
+    image.level_offsets[level] = rhi::level_offset(desc, level);
   return image;
 }
 

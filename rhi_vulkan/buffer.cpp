@@ -18,6 +18,8 @@ vk::BufferUsageFlags usage_flags(rhi::BufferUsage usage) {
   if (has(usage, rhi::BufferUsage::acceleration_structure_input))
     flags |= Usage::eAccelerationStructureBuildInputReadOnlyKHR;
   if (has(usage, rhi::BufferUsage::indirect)) flags |= Usage::eIndirectBuffer;
+  if (has(usage, rhi::BufferUsage::uniform_texels)) flags |= Usage::eUniformTexelBuffer;
+  if (has(usage, rhi::BufferUsage::storage_texels)) flags |= Usage::eStorageTexelBuffer;
   if (is_addressable(usage) || has(usage, rhi::BufferUsage::indirect)) flags |= Usage::eShaderDeviceAddress;
   return flags;
 }

@@ -16,7 +16,8 @@ CommandBuffer begin_command_buffer(const Context& context, const std::string& la
                 {.commandPool = *buffer.pool, .level = vk::CommandBufferLevel::ePrimary, .commandBufferCount = 1})
             .front());
     context.name(buffer.handle, label);
-    buffer.handle.begin({.flags = vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    // A list may be submitted again before it has executed.
+    buffer.handle.begin({.flags = vk::CommandBufferUsageFlagBits::eSimultaneousUse});
     return buffer;
   });
 }

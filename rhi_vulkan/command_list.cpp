@@ -42,8 +42,8 @@ CommandList::CommandList(ContextHandle context, std::string label)
       recording_(std::make_shared<Recording>(begin_command_buffer(*context_, this->label()))) {}
 
 CommandList::Recording& CommandList::recording() {
-  if (recording_ == nullptr)
-    throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "the command list was already submitted");
+  if (recording_->ended)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "a command is recorded after the list was submitted");
   return *recording_;
 }
 
@@ -213,10 +213,21 @@ void CommandList::dispatch(const rhi::DispatchDesc& desc) {
   rhi::validation::check(desc, context_->physical.info);
   const auto& pipeline = own<ComputePipeline>(desc.pipeline, context_, label(), "pipeline");
   recording.resources.push_back(desc.pipeline);
+  const Buffer* indirect = nullptr;
+  if (!desc.indirect_count.empty()) {
+    indirect = &own<Buffer>(desc.indirect_count.buffer, context_, label(), "buffer of an indirect count");
+    recording.resources.push_back(desc.indirect_count.buffer);
+  }
   order(CommandKind::exclusive, {});
   bind(vk::PipelineBindPoint::eCompute, pipeline.handle(), pipeline.layout(), pipeline.label(), desc.bind_groups,
        desc.push_constants);
-  recording.commands.handle.dispatch(desc.workgroup_count[0], desc.workgroup_count[1], desc.workgroup_count[2]);
+  const vk::raii::CommandBuffer& commands = recording.commands.handle;
+  const std::array<std::uint32_t, 3>& base = desc.base_workgroup;
+  const std::array<std::uint32_t, 3>& count = desc.workgroup_count;
+  if (indirect != nullptr)
+    commands.dispatchIndirect(indirect->handle(), desc.indirect_count.offset);
+  else
+    commands.dispatchBase(base[0], base[1], base[2], count[0], count[1], count[2]);
 }
 
 void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
@@ -295,17 +306,12 @@ std::map<AccelerationStructure*, std::uint32_t> CommandList::check_structure_use
 }
 
 std::uint64_t CommandList::submit() {
-  this->recording();
-  // Whatever happens, the list is used up.
-  const std::shared_ptr<Recording> recording = std::exchange(recording_, nullptr);
-  const auto built = check_structure_uses();
   return translating_errors(label(), "submit the command list", [&] {
-    recording->commands.handle.end();
-    const std::uint64_t number = context_->queue.submit(*recording->commands.handle, recording);
+    if (!std::exchange(recording_->ended, true)) recording_->commands.handle.end();
+    const auto built = check_structure_uses();
+    const std::uint64_t number = context_->queue.submit(*recording_->commands.handle, recording_);
     for (const auto& [pool, index] : timestamps_) pool->mark_submitted(index);
-    timestamps_.clear();
     for (const auto& [structure, instance_count] : built) structure->mark_built(instance_count);
-    structure_uses_.clear();
     return number;
   });
 }

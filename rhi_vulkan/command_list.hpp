@@ -37,7 +37,7 @@ class CommandList final : public rhi::CommandList {
   void write_timestamp(const rhi::QueryPoolHandle& pool, std::uint32_t index) override;
 
   const ContextHandle& context() const noexcept { return context_; }
-  /// Ends the recording, submits it and returns the submission's number.
+  /// Ends the recording the first time, submits it and returns the submission's number.
   std::uint64_t submit();
 
  private:
@@ -49,6 +49,7 @@ class CommandList final : public rhi::CommandList {
     TransientMemory staging;
     TransientMemory scratch;
     std::vector<std::shared_ptr<const void>> resources;
+    bool ended = false;  ///< by the first submission
   };
 
   struct StructureUse {
@@ -77,7 +78,7 @@ class CommandList final : public rhi::CommandList {
              vk::BuildAccelerationStructureModeKHR mode);
 
   ContextHandle context_;
-  std::shared_ptr<Recording> recording_;  // empty once submitted
+  std::shared_ptr<Recording> recording_;
   DependencyTracker dependencies_;
   std::vector<std::pair<std::shared_ptr<QueryPool>, std::uint32_t>> timestamps_;
   std::vector<StructureUse> structure_uses_;  // checked on submission: only then is it known what was built before

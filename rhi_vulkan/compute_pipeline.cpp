@@ -16,7 +16,8 @@ ComputePipeline::ComputePipeline(ContextHandle context, const rhi::ComputePipeli
                                                      .module = shader.handle(),
                                                      .pName = reflection().entry_point.c_str(),
                                                      .pSpecializationInfo = &specialization.info()};
-    pipeline_ = context_->device.createComputePipeline(nullptr, {.stage = stage, .layout = layout_->handle()});
+    pipeline_ = context_->device.createComputePipeline(
+        nullptr, {.flags = vk::PipelineCreateFlagBits::eDispatchBase, .stage = stage, .layout = layout_->handle()});
     context_->name(pipeline_, desc.label);
   });
 }

@@ -10,27 +10,26 @@ namespace tandem::vulkan {
 struct DescriptorSet::Page {
   vk::raii::DescriptorPool pool;
   std::uint32_t sets = 0;
-  DescriptorCounts free;
+  DescriptorCounts free = {};
   bool fragmented = false;  // the driver refused although the counts fit; set until a set comes back
 };
 
 namespace {
 
 constexpr std::uint32_t sets_per_page = 256;
-constexpr DescriptorCounts usual_page = {
-    .uniform_buffers = 256, .storage_buffers = 2048, .acceleration_structures = 256, .storage_images = 256};
+constexpr std::uint32_t usual_count = 256;
+constexpr std::uint32_t usual_storage_buffers = 2048;
 
 bool fits(const DescriptorCounts& wanted, const DescriptorCounts& free) {
-  return wanted.uniform_buffers <= free.uniform_buffers && wanted.storage_buffers <= free.storage_buffers &&
-         wanted.acceleration_structures <= free.acceleration_structures && wanted.storage_images <= free.storage_images;
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (wanted[i] > free[i]) return false;
+  return true;
 }
 
 vk::raii::DescriptorPool make_pool(const vk::raii::Device& device, const DescriptorCounts& counts) {
-  const std::array<vk::DescriptorPoolSize, 4> sizes = {
-      vk::DescriptorPoolSize{vk::DescriptorType::eUniformBuffer, counts.uniform_buffers},
-      vk::DescriptorPoolSize{vk::DescriptorType::eStorageBuffer, counts.storage_buffers},
-      vk::DescriptorPoolSize{vk::DescriptorType::eAccelerationStructureKHR, counts.acceleration_structures},
-      vk::DescriptorPoolSize{vk::DescriptorType::eStorageImage, counts.storage_images}};
+  std::array<vk::DescriptorPoolSize, descriptor_kind_count> sizes;
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+    sizes[i] = {.type = descriptor_type(static_cast<rhi::BindingKind>(i)), .descriptorCount = counts[i]};
   return device.createDescriptorPool({.flags = vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
                                       .maxSets = sets_per_page,
                                       .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
@@ -38,6 +37,30 @@ vk::raii::DescriptorPool make_pool(const vk::raii::Device& device, const Descrip
 }
 
 }  // namespace
+
+vk::DescriptorType descriptor_type(rhi::BindingKind kind) {
+  switch (kind) {
+    case rhi::BindingKind::uniform_buffer:
+      return vk::DescriptorType::eUniformBuffer;
+    case rhi::BindingKind::storage_buffer:
+      return vk::DescriptorType::eStorageBuffer;
+    case rhi::BindingKind::acceleration_structure:
+      return vk::DescriptorType::eAccelerationStructureKHR;
+    case rhi::BindingKind::storage_image:
+      return vk::DescriptorType::eStorageImage;
+    case rhi::BindingKind::sampled_image:
+      return vk::DescriptorType::eSampledImage;
+    case rhi::BindingKind::sampler:
+      return vk::DescriptorType::eSampler;
+    case rhi::BindingKind::combined_image_sampler:
+      return vk::DescriptorType::eCombinedImageSampler;
+    case rhi::BindingKind::uniform_texel_buffer:
+      return vk::DescriptorType::eUniformTexelBuffer;
+    case rhi::BindingKind::storage_texel_buffer:
+      return vk::DescriptorType::eStorageTexelBuffer;
+  }
+  return vk::DescriptorType::eStorageBuffer;
+}
 
 DescriptorSet::DescriptorSet(DescriptorPool& pool, vk::DescriptorSetLayout layout, const DescriptorCounts& counts)
     : pool_(pool), counts_(counts) {
@@ -57,20 +80,14 @@ DescriptorSet::DescriptorSet(DescriptorPool& pool, vk::DescriptorSetLayout layou
     }
   }
   page_->sets -= 1;
-  page_->free.uniform_buffers -= counts.uniform_buffers;
-  page_->free.storage_buffers -= counts.storage_buffers;
-  page_->free.acceleration_structures -= counts.acceleration_structures;
-  page_->free.storage_images -= counts.storage_images;
+  for (std::size_t i = 0; i < counts.size(); ++i) page_->free[i] -= counts[i];
 }
 
 DescriptorSet::~DescriptorSet() {
   const std::scoped_lock lock(pool_.mutex_);
   set_ = nullptr;
   page_->sets += 1;
-  page_->free.uniform_buffers += counts_.uniform_buffers;
-  page_->free.storage_buffers += counts_.storage_buffers;
-  page_->free.acceleration_structures += counts_.acceleration_structures;
-  page_->free.storage_images += counts_.storage_images;
+  for (std::size_t i = 0; i < counts_.size(); ++i) page_->free[i] += counts_[i];
   page_->fragmented = false;
 }
 
@@ -81,11 +98,11 @@ DescriptorPool::~DescriptorPool() = default;
 DescriptorSet::Page& DescriptorPool::page_with_room(const DescriptorCounts& counts) {
   for (DescriptorSet::Page& page : pages_)
     if (page.sets > 0 && !page.fragmented && fits(counts, page.free)) return page;
-  const DescriptorCounts size = {
-      .uniform_buffers = std::max(usual_page.uniform_buffers, counts.uniform_buffers),
-      .storage_buffers = std::max(usual_page.storage_buffers, counts.storage_buffers),
-      .acceleration_structures = std::max(usual_page.acceleration_structures, counts.acceleration_structures),
-      .storage_images = std::max(usual_page.storage_images, counts.storage_images)};
+  DescriptorCounts size = counts;
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    const bool is_storage_buffer = static_cast<rhi::BindingKind>(i) == rhi::BindingKind::storage_buffer;
+    size[i] = std::max(size[i], is_storage_buffer ? usual_storage_buffers : usual_count);
+  }
   pages_.push_back({.pool = make_pool(device_, size), .sets = sets_per_page, .free = size});
   return pages_.back();
 }

@@ -1,21 +1,25 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <list>
 #include <mutex>
 
+#include "rhi/shader_reflection.hpp"
 #include "rhi_vulkan/vulkan.hpp"
 
 namespace tandem::vulkan {
 
-/// Descriptors of each kind that bind groups may hold.
-struct DescriptorCounts {
-  std::uint32_t uniform_buffers = 0;
-  std::uint32_t storage_buffers = 0;
-  std::uint32_t acceleration_structures = 0;
-  std::uint32_t storage_images = 0;
-};
+/// Kinds of descriptors that bind groups may hold: those of rhi::BindingKind.
+inline constexpr std::size_t descriptor_kind_count =
+    static_cast<std::size_t>(rhi::BindingKind::storage_texel_buffer) + 1;
+
+/// Descriptors by rhi::BindingKind.
+using DescriptorCounts = std::array<std::uint32_t, descriptor_kind_count>;
+
+/// The Vulkan type of a binding.
+vk::DescriptorType descriptor_type(rhi::BindingKind kind);
 
 class DescriptorPool;
 

@@ -20,6 +20,8 @@
 #include "rhi_vulkan/make_device.hpp"
 #include "rhi_vulkan/query_pool.hpp"
 #include "rhi_vulkan/ray_tracing_pipeline.hpp"
+#include "rhi_vulkan/sampler.hpp"
+#include "rhi_vulkan/shader_capabilities.hpp"
 #include "rhi_vulkan/shader_module.hpp"
 #include "rhi_vulkan/shader_table.hpp"
 #include "rhi_vulkan/texture.hpp"
@@ -71,6 +73,18 @@ class Device final : public rhi::Device {
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override {
     rhi::validation::check(desc, info());
     return std::make_shared<Texture>(context_, desc);
+  }
+
+  rhi::SamplerHandle create_sampler(const rhi::SamplerDesc& desc) override {
+    rhi::validation::check(desc);
+    return std::make_shared<Sampler>(context_, desc);
+  }
+
+  std::vector<std::string> refusals(const rhi::ShaderModuleHandle& shader) const override {
+    std::vector<std::string> reasons = rhi::validation::refusals(shader, info());
+    for (const std::string& capability : missing_capabilities(shader->spirv(), context_->physical))
+      reasons.push_back("device '" + info().name + "' does not offer " + capability);
+    return reasons;
   }
 
   rhi::RayTracingPipelineHandle create_ray_tracing_pipeline(const rhi::RayTracingPipelineDesc& desc) override {

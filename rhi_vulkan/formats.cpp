@@ -60,4 +60,24 @@ static_assert(std::size(formats) == rhi::texture_format_count);
 
 vk::Format format_of(rhi::TextureFormat format) { return formats[static_cast<std::size_t>(format)]; }
 
+vk::ImageAspectFlags aspect_of(rhi::TextureFormat format) {
+  const bool is_depth = rhi::info_of(format).kind == rhi::ComponentKind::depth;
+  return is_depth ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
+}
+
+vk::ImageViewType view_type_of(rhi::TextureDimension dimension) { return static_cast<vk::ImageViewType>(dimension); }
+
+rhi::FormatSupport support_of(const vk::raii::PhysicalDevice& device, rhi::TextureFormat format) {
+  using Feature = vk::FormatFeatureFlagBits;
+  const vk::FormatProperties properties = device.getFormatProperties(format_of(format));
+  const auto images = [&](Feature feature) { return bool(properties.optimalTilingFeatures & feature); };
+  const auto buffers = [&](Feature feature) { return bool(properties.bufferFeatures & feature); };
+  return {.storage = images(Feature::eStorageImage),
+          .storage_atomic = images(Feature::eStorageImageAtomic),
+          .sampled = images(Feature::eSampledImage),
+          .filtered = images(Feature::eSampledImageFilterLinear),
+          .uniform_texel_buffer = buffers(Feature::eUniformTexelBuffer),
+          .storage_texel_buffer = buffers(Feature::eStorageTexelBuffer)};
+}
+
 }  // namespace tandem::vulkan

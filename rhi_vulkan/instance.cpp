@@ -89,7 +89,7 @@ Instance::Instance(bool driver_validation, rhi::MessageCallback on_message)
                                                            .enabledValidationFeatureCount = 1,
                                                            .pEnabledValidationFeatures = &synchronization};
     const vk::ApplicationInfo application = {
-        .pApplicationName = "tandem", .pEngineName = "tandem", .apiVersion = VK_API_VERSION_1_2};
+        .pApplicationName = "tandem", .pEngineName = "tandem", .apiVersion = VK_API_VERSION_1_3};
     vk::InstanceCreateInfo info = {.pApplicationInfo = &application,
                                    .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
                                    .ppEnabledLayerNames = layers.data(),

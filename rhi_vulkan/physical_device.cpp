@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "rhi_vulkan/error.hpp"
+#include "rhi_vulkan/formats.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -49,67 +50,10 @@ std::optional<std::uint32_t> compute_queue_family(const std::vector<vk::QueueFam
   return found;
 }
 
-/// Members of `offered` that Tandem has a use for; everything else stays off.
-EnabledFeatures choose_features(const vk::PhysicalDeviceFeatures& core, const vk::PhysicalDeviceVulkan11Features& v11,
-                                const vk::PhysicalDeviceVulkan12Features& v12) {
-  EnabledFeatures enabled;
-  enabled.core.shaderInt16 = core.shaderInt16;
-  enabled.core.shaderInt64 = core.shaderInt64;
-  enabled.core.shaderFloat64 = core.shaderFloat64;
-  enabled.core.shaderStorageBufferArrayDynamicIndexing = core.shaderStorageBufferArrayDynamicIndexing;
-  enabled.core.shaderUniformBufferArrayDynamicIndexing = core.shaderUniformBufferArrayDynamicIndexing;
-  enabled.core.shaderStorageImageArrayDynamicIndexing = core.shaderStorageImageArrayDynamicIndexing;
-  enabled.core.shaderStorageImageExtendedFormats = core.shaderStorageImageExtendedFormats;
-  enabled.core.shaderStorageImageReadWithoutFormat = core.shaderStorageImageReadWithoutFormat;
-  enabled.core.shaderStorageImageWriteWithoutFormat = core.shaderStorageImageWriteWithoutFormat;
-  enabled.vulkan11.storageBuffer16BitAccess = v11.storageBuffer16BitAccess;
-  enabled.vulkan11.uniformAndStorageBuffer16BitAccess = v11.uniformAndStorageBuffer16BitAccess;
-  enabled.vulkan12.timelineSemaphore = v12.timelineSemaphore;
-  enabled.vulkan12.bufferDeviceAddress = v12.bufferDeviceAddress;
-  enabled.vulkan12.scalarBlockLayout = v12.scalarBlockLayout;
-  enabled.vulkan12.shaderInt8 = v12.shaderInt8;
-  enabled.vulkan12.shaderFloat16 = v12.shaderFloat16;
-  enabled.vulkan12.storageBuffer8BitAccess = v12.storageBuffer8BitAccess;
-  enabled.vulkan12.uniformAndStorageBuffer8BitAccess = v12.uniformAndStorageBuffer8BitAccess;
-  enabled.vulkan12.shaderBufferInt64Atomics = v12.shaderBufferInt64Atomics;
-  enabled.vulkan12.shaderSharedInt64Atomics = v12.shaderSharedInt64Atomics;
-  enabled.vulkan12.shaderStorageBufferArrayNonUniformIndexing = v12.shaderStorageBufferArrayNonUniformIndexing;
-  enabled.vulkan12.shaderUniformBufferArrayNonUniformIndexing = v12.shaderUniformBufferArrayNonUniformIndexing;
-  enabled.vulkan12.shaderStorageImageArrayNonUniformIndexing = v12.shaderStorageImageArrayNonUniformIndexing;
-  enabled.vulkan12.vulkanMemoryModel = v12.vulkanMemoryModel;
-  enabled.vulkan12.vulkanMemoryModelDeviceScope = v12.vulkanMemoryModelDeviceScope;
-  return enabled;
-}
-
-/// The features of extensions. A structure is only asked for where its extension is offered: a driver need not know it
-/// otherwise.
-void choose_extensions(const vk::raii::PhysicalDevice& handle, const OfferedExtensions& offered,
-                       EnabledFeatures& enabled) {
-  if (offers(offered, VK_KHR_RAY_QUERY_EXTENSION_NAME)) {
-    enabled.ray_query = handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayQueryFeaturesKHR>()
-                            .get<vk::PhysicalDeviceRayQueryFeaturesKHR>()
-                            .rayQuery;
-  }
-  if (offers(offered, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) {
-    const auto pipeline =
-        handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>()
-            .get<vk::PhysicalDeviceRayTracingPipelineFeaturesKHR>();
-    enabled.ray_tracing_pipeline = pipeline.rayTracingPipeline;
-    enabled.trace_rays_indirect = pipeline.rayTracingPipeline && pipeline.rayTracingPipelineTraceRaysIndirect;
-    enabled.primitive_culling = pipeline.rayTracingPipeline && pipeline.rayTraversalPrimitiveCulling;
-  }
-  if (offers(offered, VK_EXT_ROBUSTNESS_2_EXTENSION_NAME)) {
-    enabled.null_descriptor =
-        handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceRobustness2FeaturesEXT>()
-            .get<vk::PhysicalDeviceRobustness2FeaturesEXT>()
-            .nullDescriptor;
-  }
-}
-
 vk::ShaderStageFlags stages_of(const EnabledFeatures& enabled) {
   using Stage = vk::ShaderStageFlagBits;
   vk::ShaderStageFlags stages = Stage::eCompute;
-  if (enabled.ray_tracing_pipeline)
+  if (enabled.ray_tracing_pipeline.rayTracingPipeline)
     stages |= Stage::eRaygenKHR | Stage::eAnyHitKHR | Stage::eClosestHitKHR | Stage::eMissKHR |
               Stage::eIntersectionKHR | Stage::eCallableKHR;
   return stages;
@@ -117,18 +61,25 @@ vk::ShaderStageFlags stages_of(const EnabledFeatures& enabled) {
 
 rhi::Capabilities capabilities_of(const EnabledFeatures& enabled) {
   rhi::Capabilities capabilities;
-  capabilities.ray_query = enabled.ray_query;
-  capabilities.ray_tracing_pipeline = enabled.ray_tracing_pipeline;
-  capabilities.trace_rays_indirect = enabled.trace_rays_indirect;
-  capabilities.primitive_culling = enabled.primitive_culling;
-  capabilities.null_acceleration_structure = enabled.null_descriptor;
-  capabilities.buffer_references = enabled.vulkan12.bufferDeviceAddress;
+  const vk::PhysicalDeviceVulkan12Features& v12 = enabled.vulkan12;
+  capabilities.ray_query = enabled.ray_query.rayQuery;
+  capabilities.ray_tracing_pipeline = enabled.ray_tracing_pipeline.rayTracingPipeline;
+  capabilities.trace_rays_indirect = enabled.ray_tracing_pipeline.rayTracingPipelineTraceRaysIndirect;
+  capabilities.primitive_culling = enabled.ray_tracing_pipeline.rayTraversalPrimitiveCulling;
+  capabilities.null_acceleration_structure = enabled.robustness2.nullDescriptor;
+  capabilities.buffer_references = v12.bufferDeviceAddress;
   // Arrays of acceleration structures need no feature of their own.
-  capabilities.non_uniform_indexing = enabled.vulkan12.shaderStorageBufferArrayNonUniformIndexing &&
-                                      enabled.vulkan12.shaderUniformBufferArrayNonUniformIndexing &&
-                                      enabled.vulkan12.shaderStorageImageArrayNonUniformIndexing;
-  capabilities.scalar_block_layout = enabled.vulkan12.scalarBlockLayout;
+  capabilities.non_uniform_indexing =
+      v12.shaderStorageBufferArrayNonUniformIndexing && v12.shaderUniformBufferArrayNonUniformIndexing &&
+      v12.shaderStorageImageArrayNonUniformIndexing && v12.shaderSampledImageArrayNonUniformIndexing;
+  capabilities.unsized_arrays = v12.runtimeDescriptorArray;
+  capabilities.partially_bound = v12.descriptorBindingPartiallyBound;
+  capabilities.cube_arrays = enabled.core.imageCubeArray;
+  capabilities.scalar_block_layout = v12.scalarBlockLayout;
+  capabilities.shader_int8 = v12.shaderInt8 && v12.storageBuffer8BitAccess;
+  capabilities.shader_int16 = enabled.core.shaderInt16 && enabled.vulkan11.storageBuffer16BitAccess;
   capabilities.shader_int64 = enabled.core.shaderInt64;
+  capabilities.shader_float16 = v12.shaderFloat16 && enabled.vulkan11.storageBuffer16BitAccess;
   capabilities.shader_float64 = enabled.core.shaderFloat64;
   return capabilities;
 }
@@ -139,6 +90,8 @@ rhi::Limits limits_of(const vk::PhysicalDeviceLimits& core,
   constexpr std::uint64_t most_instances = (1ull << 24) - 1;
   rhi::Limits limits;
   limits.max_push_constant_size = core.maxPushConstantsSize;
+  limits.texel_buffer_offset_alignment = core.minTexelBufferOffsetAlignment;
+  limits.max_texel_buffer_elements = core.maxTexelBufferElements;
   limits.max_storage_buffer_range = core.maxStorageBufferRange;
   limits.max_uniform_buffer_range = core.maxUniformBufferRange;
   limits.storage_buffer_offset_alignment = core.minStorageBufferOffsetAlignment;
@@ -190,9 +143,8 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
        {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME})
     if (!offers(offered, needed)) return refuse(std::string("lacks the extension ") + needed);
 
-  const auto features =
-      handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan11Features,
-                          vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
+  const auto features = handle.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                            vk::PhysicalDeviceAccelerationStructureFeaturesKHR>();
   const auto& vulkan12 = features.get<vk::PhysicalDeviceVulkan12Features>();
   if (!features.get<vk::PhysicalDeviceAccelerationStructureFeaturesKHR>().accelerationStructure)
     return refuse("lacks the feature accelerationStructure");
@@ -213,9 +165,11 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
 
   PhysicalDevice device;
   device.handle = std::move(handle);
-  device.features = choose_features(features.get<vk::PhysicalDeviceFeatures2>().features,
-                                    features.get<vk::PhysicalDeviceVulkan11Features>(), vulkan12);
-  choose_extensions(device.handle, offered, device.features);
+  device.features = choose_features(device.handle);
+  // SPIR-V 1.6 came with Vulkan 1.3 ("Versions and Formats" of the appendix "Vulkan Environment for SPIR-V").
+  device.newest_spirv = device.features.has_vulkan13 ? 0x00010600 : 0x00010500;
+  device.vulkan12 = vulkan12_properties;
+  device.vulkan12.pNext = nullptr;
   device.queue_family = *family;
   device.timestamp_valid_bits = families[*family].timestampValidBits;
   device.timestamp_period = core_properties.limits.timestampPeriod;
@@ -235,20 +189,13 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   info.capabilities = capabilities_of(device.features);
   info.capabilities.timestamps = device.timestamp_valid_bits > 0;
   info.limits = limits_of(core_properties.limits, acceleration);
-  if (device.features.ray_tracing_pipeline) add_ray_tracing_pipeline_limits(device);
+  for (std::size_t i = 0; i < info.formats.size(); ++i)
+    info.formats[i] = support_of(device.handle, static_cast<rhi::TextureFormat>(i));
+  if (device.features.ray_tracing_pipeline.rayTracingPipeline) add_ray_tracing_pipeline_limits(device);
   return device;
 }
 
 }  // namespace
-
-std::vector<const char*> extensions_of(const EnabledFeatures& enabled) {
-  std::vector<const char*> extensions = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
-                                         VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
-  if (enabled.ray_query) extensions.push_back(VK_KHR_RAY_QUERY_EXTENSION_NAME);
-  if (enabled.ray_tracing_pipeline) extensions.push_back(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-  if (enabled.null_descriptor) extensions.push_back(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME);
-  return extensions;
-}
 
 PhysicalDevices find_physical_devices(const Instance& instance) {
   return translating_errors("", "list the Vulkan devices", [&] {

@@ -8,18 +8,30 @@ namespace {
 
 std::vector<vk::raii::DescriptorSetLayout> make_set_layouts(const Context& context,
                                                             const rhi::PipelineInterface& interface) {
-  std::vector<std::vector<vk::DescriptorSetLayoutBinding>> sets;
+  struct Set {
+    std::vector<vk::DescriptorSetLayoutBinding> bindings;
+    std::vector<vk::DescriptorBindingFlags> flags;
+  };
+  std::vector<Set> sets;
   for (const rhi::ShaderBinding& binding : interface.bindings) {
     if (binding.set >= sets.size()) sets.resize(binding.set + 1);
-    sets[binding.set].push_back({.binding = binding.binding,
-                                 .descriptorType = descriptor_type(binding.kind),
-                                 .descriptorCount = binding.count,
-                                 .stageFlags = context.physical.shader_stages});
+    Set& set = sets[binding.set];
+    set.bindings.push_back({.binding = binding.binding,
+                            .descriptorType = descriptor_type(binding.kind),
+                            .descriptorCount = capacity(interface, binding),
+                            .stageFlags = context.physical.shader_stages});
+    const bool may_miss = binding.count != 1 && context.physical.info.capabilities.partially_bound;
+    set.flags.push_back(may_miss ? vk::DescriptorBindingFlagBits::ePartiallyBound : vk::DescriptorBindingFlags());
   }
   std::vector<vk::raii::DescriptorSetLayout> layouts;
-  for (const std::vector<vk::DescriptorSetLayoutBinding>& bindings : sets)
-    layouts.push_back(context.device.createDescriptorSetLayout(
-        {.bindingCount = static_cast<std::uint32_t>(bindings.size()), .pBindings = bindings.data()}));
+  for (const Set& set : sets) {
+    const vk::DescriptorSetLayoutBindingFlagsCreateInfo flags = {
+        .bindingCount = static_cast<std::uint32_t>(set.flags.size()), .pBindingFlags = set.flags.data()};
+    layouts.push_back(
+        context.device.createDescriptorSetLayout({.pNext = &flags,
+                                                  .bindingCount = static_cast<std::uint32_t>(set.bindings.size()),
+                                                  .pBindings = set.bindings.data()}));
+  }
   return layouts;
 }
 
@@ -42,21 +54,6 @@ const PipelineLayout& layout_of(const rhi::PipelineHandle& pipeline, const Conte
   if (pipeline->kind() == rhi::Pipeline::Kind::compute)
     return own<ComputePipeline>(pipeline, context, label, "pipeline").layout();
   return own<RayTracingPipeline>(pipeline, context, label, "pipeline").layout();
-}
-
-vk::DescriptorType descriptor_type(rhi::BindingKind kind) {
-  switch (kind) {
-    case rhi::BindingKind::uniform_buffer:
-      return vk::DescriptorType::eUniformBuffer;
-    case rhi::BindingKind::storage_buffer:
-      return vk::DescriptorType::eStorageBuffer;
-    case rhi::BindingKind::acceleration_structure:
-      return vk::DescriptorType::eAccelerationStructureKHR;
-    case rhi::BindingKind::storage_image:
-      return vk::DescriptorType::eStorageImage;
-    default:
-      throw rhi::Error(rhi::ErrorCode::unsupported, "", "bind groups hold no sampled images and no samplers");
-  }
 }
 
 Specialization::Specialization(std::span<const rhi::SpecializationValue> values) {

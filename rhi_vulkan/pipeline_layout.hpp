@@ -32,9 +32,6 @@ class PipelineLayout {
 const PipelineLayout& layout_of(const rhi::PipelineHandle& pipeline, const ContextHandle& context,
                                 const std::string& label);
 
-/// The Vulkan type of a binding that a bind group can hold.
-vk::DescriptorType descriptor_type(rhi::BindingKind kind);
-
 /// Values of specialisation constants in Vulkan's terms. Refers to the values it was made from.
 class Specialization {
  public:

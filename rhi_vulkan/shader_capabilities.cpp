@@ -12,7 +12,6 @@ namespace {
 
 using spv::Capability;
 
-constexpr std::uint32_t newest_spirv = 0x00010500;  // what Vulkan 1.2 requires devices to take
 constexpr std::size_t header_words = 5;
 
 /// A capability, and whether a device lets shaders use it. From "Runtime Environment for SPIR-V", Vulkan appendix A.
@@ -33,15 +32,31 @@ constexpr auto vulkan11 = [](const PhysicalDevice& device) { return device.featu
 template <vk::Bool32 vk::PhysicalDeviceVulkan12Features::*feature>
 constexpr auto vulkan12 = [](const PhysicalDevice& device) { return device.features.vulkan12.*feature == VK_TRUE; };
 
+template <vk::Bool32 vk::PhysicalDeviceVulkan13Features::*feature>
+constexpr auto vulkan13 = [](const PhysicalDevice& device) { return device.features.vulkan13.*feature == VK_TRUE; };
+
+/// One of several float widths is enough: an execution mode names the width, and the validator checks it.
+template <vk::Bool32 vk::PhysicalDeviceVulkan12Properties::*... property>
+constexpr auto float_control =
+    [](const PhysicalDevice& device) { return ((device.vulkan12.*property == VK_TRUE) || ...); };
+
+template <auto extension, auto... feature>
+constexpr auto extension_feature =
+    [](const PhysicalDevice& device) { return (((device.features.*extension).*feature == VK_TRUE) || ...); };
+
 template <vk::SubgroupFeatureFlagBits operation>
 constexpr auto subgroup = [](const PhysicalDevice& device) { return bool(device.subgroup_operations & operation); };
 
-constexpr auto ray_query = [](const PhysicalDevice& device) { return device.features.ray_query; };
-constexpr auto ray_tracing_pipeline = [](const PhysicalDevice& device) { return device.features.ray_tracing_pipeline; };
 constexpr auto primitive_culling = [](const PhysicalDevice& device) {
-  return device.features.ray_query || device.features.primitive_culling;
+  return device.features.ray_query.rayQuery || device.features.ray_tracing_pipeline.rayTraversalPrimitiveCulling;
 };
 
+using E = EnabledFeatures;
+using AtomicFloat = vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT;
+using AtomicFloat2 = vk::PhysicalDeviceShaderAtomicFloat2FeaturesEXT;
+using ExplicitLayout = vk::PhysicalDeviceWorkgroupMemoryExplicitLayoutFeaturesKHR;
+using P12 = vk::PhysicalDeviceVulkan12Properties;
+using V13 = vk::PhysicalDeviceVulkan13Features;
 using Core = vk::PhysicalDeviceFeatures;
 using V11 = vk::PhysicalDeviceVulkan11Features;
 using V12 = vk::PhysicalDeviceVulkan12Features;
@@ -100,36 +115,124 @@ constexpr std::array rules = {
          subgroup<Subgroup::eShuffleRelative>},
     Rule{Capability::GroupNonUniformClustered, "GroupNonUniformClustered", subgroup<Subgroup::eClustered>},
     Rule{Capability::GroupNonUniformQuad, "GroupNonUniformQuad", subgroup<Subgroup::eQuad>},
-    Rule{Capability::RayQueryKHR, "RayQueryKHR", ray_query},
+    Rule{Capability::RayQueryKHR, "RayQueryKHR",
+         extension_feature<&E::ray_query, &vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery>},
     Rule{Capability::RayTraversalPrimitiveCullingKHR, "RayTraversalPrimitiveCullingKHR", primitive_culling},
-    Rule{Capability::RayTracingKHR, "RayTracingKHR", ray_tracing_pipeline},
+    Rule{Capability::RayTracingKHR, "RayTracingKHR",
+         extension_feature<&E::ray_tracing_pipeline,
+                           &vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline>},
+    Rule{Capability::RayCullMaskKHR, "RayCullMaskKHR",
+         extension_feature<&E::ray_tracing_maintenance1,
+                           &vk::PhysicalDeviceRayTracingMaintenance1FeaturesKHR::rayTracingMaintenance1>},
+    Rule{Capability::SampledCubeArray, "SampledCubeArray", core<&Core::imageCubeArray>},
+    Rule{Capability::ImageCubeArray, "ImageCubeArray", core<&Core::imageCubeArray>},
+    Rule{Capability::ImageGatherExtended, "ImageGatherExtended", core<&Core::shaderImageGatherExtended>},
+    Rule{Capability::MinLod, "MinLod", core<&Core::shaderResourceMinLod>},
+    Rule{Capability::SampledImageArrayDynamicIndexing, "SampledImageArrayDynamicIndexing",
+         core<&Core::shaderSampledImageArrayDynamicIndexing>},
+    Rule{Capability::RuntimeDescriptorArray, "RuntimeDescriptorArray", vulkan12<&V12::runtimeDescriptorArray>},
+    Rule{Capability::SampledImageArrayNonUniformIndexing, "SampledImageArrayNonUniformIndexing",
+         vulkan12<&V12::shaderSampledImageArrayNonUniformIndexing>},
+    Rule{Capability::UniformTexelBufferArrayDynamicIndexing, "UniformTexelBufferArrayDynamicIndexing",
+         vulkan12<&V12::shaderUniformTexelBufferArrayDynamicIndexing>},
+    Rule{Capability::StorageTexelBufferArrayDynamicIndexing, "StorageTexelBufferArrayDynamicIndexing",
+         vulkan12<&V12::shaderStorageTexelBufferArrayDynamicIndexing>},
+    Rule{Capability::UniformTexelBufferArrayNonUniformIndexing, "UniformTexelBufferArrayNonUniformIndexing",
+         vulkan12<&V12::shaderUniformTexelBufferArrayNonUniformIndexing>},
+    Rule{Capability::StorageTexelBufferArrayNonUniformIndexing, "StorageTexelBufferArrayNonUniformIndexing",
+         vulkan12<&V12::shaderStorageTexelBufferArrayNonUniformIndexing>},
+    Rule{Capability::StoragePushConstant8, "StoragePushConstant8", vulkan12<&V12::storagePushConstant8>},
+    Rule{Capability::StoragePushConstant16, "StoragePushConstant16", vulkan11<&V11::storagePushConstant16>},
+    Rule{Capability::VariablePointers, "VariablePointers", vulkan11<&V11::variablePointers>},
+    Rule{Capability::VariablePointersStorageBuffer, "VariablePointersStorageBuffer",
+         vulkan11<&V11::variablePointersStorageBuffer>},
+    Rule{Capability::DenormPreserve, "DenormPreserve",
+         float_control<&P12::shaderDenormPreserveFloat16, &P12::shaderDenormPreserveFloat32,
+                       &P12::shaderDenormPreserveFloat64>},
+    Rule{Capability::DenormFlushToZero, "DenormFlushToZero",
+         float_control<&P12::shaderDenormFlushToZeroFloat16, &P12::shaderDenormFlushToZeroFloat32,
+                       &P12::shaderDenormFlushToZeroFloat64>},
+    Rule{Capability::SignedZeroInfNanPreserve, "SignedZeroInfNanPreserve",
+         float_control<&P12::shaderSignedZeroInfNanPreserveFloat16, &P12::shaderSignedZeroInfNanPreserveFloat32,
+                       &P12::shaderSignedZeroInfNanPreserveFloat64>},
+    Rule{Capability::RoundingModeRTE, "RoundingModeRTE",
+         float_control<&P12::shaderRoundingModeRTEFloat16, &P12::shaderRoundingModeRTEFloat32,
+                       &P12::shaderRoundingModeRTEFloat64>},
+    Rule{Capability::RoundingModeRTZ, "RoundingModeRTZ",
+         float_control<&P12::shaderRoundingModeRTZFloat16, &P12::shaderRoundingModeRTZFloat32,
+                       &P12::shaderRoundingModeRTZFloat64>},
+    Rule{Capability::ShaderClockKHR, "ShaderClockKHR",
+         extension_feature<&E::shader_clock, &vk::PhysicalDeviceShaderClockFeaturesKHR::shaderSubgroupClock,
+                           &vk::PhysicalDeviceShaderClockFeaturesKHR::shaderDeviceClock>},
+    Rule{Capability::DotProduct, "DotProduct", vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::DotProductInputAll, "DotProductInputAll", vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::DotProductInput4x8Bit, "DotProductInput4x8Bit", vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::DotProductInput4x8BitPacked, "DotProductInput4x8BitPacked",
+         vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::AtomicFloat32AddEXT, "AtomicFloat32AddEXT",
+         extension_feature<&E::atomic_float, &AtomicFloat::shaderBufferFloat32AtomicAdd,
+                           &AtomicFloat::shaderSharedFloat32AtomicAdd, &AtomicFloat::shaderImageFloat32AtomicAdd>},
+    Rule{Capability::AtomicFloat64AddEXT, "AtomicFloat64AddEXT",
+         extension_feature<&E::atomic_float, &AtomicFloat::shaderBufferFloat64AtomicAdd,
+                           &AtomicFloat::shaderSharedFloat64AtomicAdd>},
+    Rule{Capability::AtomicFloat16AddEXT, "AtomicFloat16AddEXT",
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicAdd>},
+    Rule{Capability::AtomicFloat16MinMaxEXT, "AtomicFloat16MinMaxEXT",
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicMinMax>},
+    Rule{Capability::AtomicFloat32MinMaxEXT, "AtomicFloat32MinMaxEXT",
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat32AtomicMinMax,
+                           &AtomicFloat2::shaderImageFloat32AtomicMinMax>},
+    Rule{Capability::AtomicFloat64MinMaxEXT, "AtomicFloat64MinMaxEXT",
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat64AtomicMinMax>},
+    Rule{Capability::Int64ImageEXT, "Int64ImageEXT",
+         extension_feature<&E::image_atomic_int64,
+                           &vk::PhysicalDeviceShaderImageAtomicInt64FeaturesEXT::shaderImageInt64Atomics>},
+    Rule{Capability::WorkgroupMemoryExplicitLayoutKHR, "WorkgroupMemoryExplicitLayoutKHR",
+         extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout>},
+    Rule{Capability::WorkgroupMemoryExplicitLayout8BitAccessKHR, "WorkgroupMemoryExplicitLayout8BitAccessKHR",
+         extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout8BitAccess>},
+    Rule{Capability::WorkgroupMemoryExplicitLayout16BitAccessKHR, "WorkgroupMemoryExplicitLayout16BitAccessKHR",
+         extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout16BitAccess>},
 };
 
-void check_capability(Capability capability, const PhysicalDevice& device, std::string_view label) {
+/// "the SPIR-V capability X", for one that the device does not offer; empty for one that it does.
+std::string missing(Capability capability, const PhysicalDevice& device) {
   std::string name = std::to_string(static_cast<std::uint32_t>(capability));
   for (const Rule& rule : rules) {
     if (rule.capability != capability) continue;
-    if (rule.allowed(device)) return;
+    if (rule.allowed(device)) return {};
     name = rule.name;
   }
-  throw rhi::Error(
-      rhi::ErrorCode::unsupported, label,
-      "the shader needs the SPIR-V capability " + name + ", which device '" + device.info.name + "' does not offer");
+  return "the SPIR-V capability " + name;
+}
+
+std::string version_text(std::uint32_t version) {
+  return std::to_string(version >> 16 & 0xff) + "." + std::to_string(version >> 8 & 0xff);
 }
 
 }  // namespace
 
-void check_shader_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device,
-                               std::string_view label) {
-  if (spirv[1] > newest_spirv)
-    throw rhi::Error(rhi::ErrorCode::unsupported, label,
-                     "the shader is SPIR-V " + std::to_string(spirv[1] >> 16 & 0xff) + "." +
-                         std::to_string(spirv[1] >> 8 & 0xff) + ", but Vulkan 1.2 takes at most 1.5");
+std::vector<std::string> missing_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device) {
+  std::vector<std::string> all;
+  if (spirv[1] > device.newest_spirv)
+    all.push_back("SPIR-V " + version_text(spirv[1]) + " (it takes at most " + version_text(device.newest_spirv) + ")");
   // Capabilities come first in a module, so the first other instruction ends them.
   for (std::size_t i = header_words; i + 1 < spirv.size(); i += spirv[i] >> 16) {
     if ((spirv[i] & 0xffff) != static_cast<std::uint32_t>(spv::Op::OpCapability)) break;
-    check_capability(static_cast<Capability>(spirv[i + 1]), device, label);
+    const std::string capability = missing(static_cast<Capability>(spirv[i + 1]), device);
+    if (!capability.empty()) all.push_back(capability);
   }
+  return all;
+}
+
+void check_shader_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device,
+                               std::string_view label) {
+  const std::vector<std::string> all = missing_capabilities(spirv, device);
+  if (all.empty()) return;
+  std::string list;
+  for (std::size_t i = 0; i < all.size(); ++i) list += (i == 0 ? "" : i + 1 == all.size() ? " and " : ", ") + all[i];
+  throw rhi::Error(rhi::ErrorCode::unsupported, label,
+                   "the shader needs " + list + ", which device '" + device.info.name + "' does not offer");
 }
 
 }  // namespace tandem::vulkan

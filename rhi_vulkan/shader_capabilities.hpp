@@ -2,14 +2,19 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "rhi_vulkan/physical_device.hpp"
 
 namespace tandem::vulkan {
 
-/// Throws rhi::Error(unsupported) when the module's SPIR-V is newer than Vulkan 1.2 takes, or when it declares a
-/// capability that no feature the device was created with allows; the error names it.
+/// What the module needs and no feature that the device was created with allows, "the SPIR-V capability Float16" for
+/// example: its version, and the capabilities that it declares.
+std::vector<std::string> missing_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device);
+
+/// Throws rhi::Error(unsupported), in the name of `label`, with all that missing_capabilities() finds.
 void check_shader_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device,
                                std::string_view label);
 

@@ -7,12 +7,17 @@
 namespace tandem::vulkan {
 
 ShaderModule::ShaderModule(ContextHandle context, const rhi::ShaderModuleDesc& desc)
-    : rhi::ShaderModule(desc), context_(std::move(context)) {
-  check_shader_capabilities(spirv(), context_->physical, desc.label);
-  translating_errors(desc.label, "create the shader module", [&] {
+    : rhi::ShaderModule(desc), context_(std::move(context)) {}
+
+vk::ShaderModule ShaderModule::handle() const {
+  const std::scoped_lock lock(mutex_);
+  if (*module_) return *module_;
+  check_shader_capabilities(spirv(), context_->physical, label());
+  translating_errors(label(), "create the shader module", [&] {
     module_ = context_->device.createShaderModule({.codeSize = spirv().size_bytes(), .pCode = spirv().data()});
-    context_->name(module_, desc.label);
+    context_->name(module_, label());
   });
+  return *module_;
 }
 
 }  // namespace tandem::vulkan

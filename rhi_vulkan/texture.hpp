@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "rhi/texture.hpp"
 #include "rhi_vulkan/buffer.hpp"
@@ -14,11 +15,10 @@ class Texture final : public rhi::Texture {
 
   const ContextHandle& context() const noexcept { return context_; }
   vk::Image handle() const { return *image_->handle; }
-  vk::ImageView view() const { return *view_; }
   /// With everything before finished and visible to everything after.
   void change_layout(const vk::raii::CommandBuffer& commands, vk::ImageLayout from, vk::ImageLayout to) const;
-  /// All texels, tightly packed in a buffer from `offset` on.
-  vk::BufferImageCopy whole(std::uint64_t offset) const;
+  /// All levels, in a buffer from `offset` on as rhi::level_offset says.
+  std::vector<vk::BufferImageCopy> whole(std::uint64_t offset) const;
 
  private:
   struct BackedImage {
@@ -27,11 +27,9 @@ class Texture final : public rhi::Texture {
   };
 
   std::shared_ptr<BackedImage> make_image() const;
-  void make_view();
 
   ContextHandle context_;
   std::shared_ptr<BackedImage> image_;  // shared with the submission that changes its layout
-  vk::raii::ImageView view_ = nullptr;
 };
 
 }  // namespace tandem::vulkan

@@ -18,8 +18,14 @@ constexpr std::pair<Capability, std::string_view> capability_names[] = {
     {&Capabilities::null_acceleration_structure, "null_acceleration_structure"},
     {&Capabilities::buffer_references, "buffer_references"},
     {&Capabilities::non_uniform_indexing, "non_uniform_indexing"},
+    {&Capabilities::unsized_arrays, "unsized_arrays"},
+    {&Capabilities::partially_bound, "partially_bound"},
+    {&Capabilities::cube_arrays, "cube_arrays"},
     {&Capabilities::scalar_block_layout, "scalar_block_layout"},
+    {&Capabilities::shader_int8, "shader_int8"},
+    {&Capabilities::shader_int16, "shader_int16"},
     {&Capabilities::shader_int64, "shader_int64"},
+    {&Capabilities::shader_float16, "shader_float16"},
     {&Capabilities::shader_float64, "shader_float64"},
     {&Capabilities::timestamps, "timestamps"},
 };
@@ -41,6 +47,11 @@ void Group::add(const std::string& last_name, const std::string& behaviour, std:
 std::vector<Case> all_cases() {
   Cases cases;
   add_device_cases(cases);
+  add_compute_cases(cases);
+  add_descriptor_cases(cases);
+  add_arithmetic_cases(cases);
+  add_storage_image_cases(cases);
+  add_sampler_cases(cases);
   add_ray_query_builtin_cases(cases);
   add_ray_query_traversal_cases(cases);
   add_ray_query_procedural_cases(cases);

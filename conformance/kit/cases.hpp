@@ -21,6 +21,11 @@ struct Group {
 };
 
 void add_device_cases(Cases& cases);
+void add_compute_cases(Cases& cases);
+void add_descriptor_cases(Cases& cases);
+void add_arithmetic_cases(Cases& cases);
+void add_storage_image_cases(Cases& cases);
+void add_sampler_cases(Cases& cases);
 void add_ray_query_builtin_cases(Cases& cases);
 void add_ray_query_traversal_cases(Cases& cases);
 void add_ray_query_procedural_cases(Cases& cases);

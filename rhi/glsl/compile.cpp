@@ -1,5 +1,6 @@
 #include "rhi/glsl/compile.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -117,6 +118,45 @@ std::string first_error(const std::string& log) {
   return log;
 }
 
+bool is_identifier(std::string_view name) {
+  const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto is_part = [&](char c) { return is_letter(c) || (c >= '0' && c <= '9'); };
+  return !name.empty() && is_letter(name.front()) && std::all_of(name.begin(), name.end(), is_part);
+}
+
+/// What stands between the #version line and the rest of the source.
+std::string preamble(const CompileOptions& options, const std::string& name) {
+  std::string text = "#extension GL_GOOGLE_include_directive : enable\n";
+  for (const Define& define : options.defines) {
+    if (!is_identifier(define.name) || define.value.find('\n') != std::string::npos)
+      throw rhi::Error(rhi::ErrorCode::invalid_argument, name,
+                       "'" + define.name + "' cannot be defined: a macro has an identifier and one line");
+    text += "#define " + define.name + " " + define.value + "\n";
+  }
+  return text;
+}
+
+struct Target {
+  glslang::EShTargetClientVersion vulkan;
+  glslang::EShTargetLanguageVersion spirv;
+};
+
+Target target_of(SpirvVersion version) {
+  switch (version) {
+    case SpirvVersion::v1_0:
+      return {glslang::EShTargetVulkan_1_0, glslang::EShTargetSpv_1_0};
+    case SpirvVersion::v1_3:
+      return {glslang::EShTargetVulkan_1_1, glslang::EShTargetSpv_1_3};
+    case SpirvVersion::v1_4:
+      return {glslang::EShTargetVulkan_1_2, glslang::EShTargetSpv_1_4};
+    case SpirvVersion::v1_5:
+      return {glslang::EShTargetVulkan_1_2, glslang::EShTargetSpv_1_5};
+    case SpirvVersion::v1_6:
+      return {glslang::EShTargetVulkan_1_3, glslang::EShTargetSpv_1_6};
+  }
+  return {glslang::EShTargetVulkan_1_2, glslang::EShTargetSpv_1_5};
+}
+
 [[noreturn]] void fail(const std::string& name, const std::string& log) {
   throw rhi::Error(rhi::ErrorCode::shader_compilation, name, "the GLSL does not compile: " + first_error(log));
 }
@@ -134,8 +174,11 @@ std::vector<std::uint32_t> compile(std::string_view source, rhi::ShaderStage sta
   const char* text_name = name.c_str();
   shader.setStringsWithLengthsAndNames(&text, &length, &text_name, 1);
   shader.setEnvInput(glslang::EShSourceGlsl, language, glslang::EShClientVulkan, 100);
-  shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_2);
-  shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_5);
+  const Target target = target_of(options.spirv);
+  shader.setEnvClient(glslang::EShClientVulkan, target.vulkan);
+  shader.setEnvTarget(glslang::EShTargetSpv, target.spirv);
+  const std::string text_before = preamble(options, name);
+  shader.setPreamble(text_before.c_str());
 
   const auto rules = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules |
                                               (options.debug_info ? EShMsgDebugInfo : EShMsgDefault));
@@ -154,6 +197,27 @@ std::vector<std::uint32_t> compile(std::string_view source, rhi::ShaderStage sta
   std::vector<unsigned int> words;
   glslang::GlslangToSpv(*program.getIntermediate(language), words, &spirv_options);
   return words;
+}
+
+std::optional<rhi::ShaderStage> stage_of(const std::filesystem::path& file) {
+  const std::filesystem::path name = file.extension() == ".glsl" ? file.stem() : file.filename();
+  const std::string extension = name.extension().string();
+  if (extension == ".comp") return rhi::ShaderStage::compute;
+  if (extension == ".rgen") return rhi::ShaderStage::ray_generation;
+  if (extension == ".rahit") return rhi::ShaderStage::any_hit;
+  if (extension == ".rchit") return rhi::ShaderStage::closest_hit;
+  if (extension == ".rmiss") return rhi::ShaderStage::miss;
+  if (extension == ".rint") return rhi::ShaderStage::intersection;
+  if (extension == ".rcall") return rhi::ShaderStage::callable;
+  return std::nullopt;
+}
+
+std::vector<std::uint32_t> compile_file(const std::filesystem::path& file, const CompileOptions& options) {
+  const std::optional<rhi::ShaderStage> stage = stage_of(file);
+  if (!stage)
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, file.string(),
+                     "the extension names no stage: .comp, .rgen, .rahit, .rchit, .rmiss, .rint or .rcall");
+  return compile(read_bytes(file, most_included_bytes), *stage, file.string(), options);
 }
 
 }  // namespace tandem::glsl

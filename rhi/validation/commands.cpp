@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -57,7 +59,15 @@ void check_first_record(std::uint32_t first, const ShaderRecords& records, const
               to_string(records.records.size()));
 }
 
-constexpr std::uint64_t indirect_size_bytes = 12;
+/// Three uint32 in a buffer.
+void check_indirect(const BufferRange& range, const std::string& label, const std::string& what) {
+  constexpr std::uint64_t bytes = 12;
+  require_range(label, range, what);
+  require_usage(label, range, BufferUsage::indirect, "indirect", what);
+  require_alignment(label, range, 4, what);
+  require(range.resolved_size() >= bytes, label,
+          what + " has " + to_string(range.resolved_size()) + " bytes where 12 are needed");
+}
 
 }  // namespace
 
@@ -91,6 +101,19 @@ void check(const TextureDesc& desc, const DeviceInfo& device) {
   require_limit(desc.level_count, full_level_count(desc), desc.label, "levels of a texture of this size");
 }
 
+void check(const SamplerDesc& desc) {
+  require(std::isfinite(desc.lod_bias) && desc.min_lod <= desc.max_lod, desc.label,
+          "a sampler whose smallest level of detail is above its largest, or whose bias is no number");
+  if (!desc.unnormalized_coordinates) return;
+  const auto clamps = [](AddressMode mode) {
+    return mode == AddressMode::clamp_to_edge || mode == AddressMode::clamp_to_border;
+  };
+  require(desc.magnification == desc.minification && desc.mipmap == Filter::nearest && desc.min_lod == 0 &&
+              desc.max_lod == 0 && clamps(desc.address[0]) && clamps(desc.address[1]) && !desc.compare,
+          desc.label,
+          "a sampler with unnormalised coordinates has equal filters, no levels, clamped addresses and no comparison");
+}
+
 void check(const DispatchDesc& desc, const DeviceInfo& device) {
   require(desc.pipeline != nullptr, "", "a dispatch needs a pipeline");
   for (std::size_t i = 0; i < 3; ++i)
@@ -98,6 +121,16 @@ void check(const DispatchDesc& desc, const DeviceInfo& device) {
             to_string(desc.workgroup_count[i]) + " workgroups in dimension " + to_string(i) +
                 " are more than the device's " + to_string(device.limits.max_workgroup_count[i]));
   check_bindings(*desc.pipeline, desc.bind_groups, desc.push_constants.size(), "dispatch");
+  const std::string& label = desc.pipeline->label();
+  if (!desc.indirect_count.empty()) {
+    check_indirect(desc.indirect_count, label, "the indirect count of a dispatch");
+    require(desc.base_workgroup == std::array<std::uint32_t, 3>{}, label,
+            "an indirect dispatch begins at workgroup 0, 0, 0");
+    return;
+  }
+  for (std::size_t i = 0; i < 3; ++i)
+    require_limit(std::uint64_t{desc.base_workgroup[i]} + desc.workgroup_count[i], device.limits.max_workgroup_count[i],
+                  label, "workgroups up to the last in dimension " + to_string(i));
 }
 
 void check(const TraceRaysDesc& desc, const DeviceInfo& device) {
@@ -114,13 +147,7 @@ void check(const TraceRaysDesc& desc, const DeviceInfo& device) {
   if (!desc.indirect_size.empty()) {
     if (!device.capabilities.trace_rays_indirect)
       throw Error(ErrorCode::unsupported, label, "device '" + device.name + "' has no indirect traces");
-    const std::string what = "the indirect size of a trace";
-    require_range(label, desc.indirect_size, what);
-    require_usage(label, desc.indirect_size, BufferUsage::indirect, "indirect", what);
-    require_alignment(label, desc.indirect_size, 4, what);
-    require(desc.indirect_size.resolved_size() >= indirect_size_bytes, label,
-            what + " has " + to_string(desc.indirect_size.resolved_size()) + " bytes where 12 are needed");
-    return;
+    return check_indirect(desc.indirect_size, label, "the indirect size of a trace");
   }
   std::uint64_t invocations = 1;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <span>
 #include <string>
 
@@ -9,23 +10,6 @@ namespace tandem::rhi::validation {
 namespace {
 
 using std::to_string;
-
-void check_workgroup_size(const ComputePipelineDesc& desc, const Limits& limits) {
-  const ShaderReflection& reflection = desc.shader->reflection();
-  std::uint64_t invocations = 1;
-  for (std::size_t i = 0; i < 3; ++i) {
-    std::uint32_t size = reflection.workgroup_size[i];
-    for (const SpecializationValue& given : desc.specialization)
-      if (reflection.workgroup_size_constant[i] == given.id) size = given.value;
-    require(size > 0 && size <= limits.max_workgroup_size[i], desc.label,
-            "a workgroup size of " + to_string(size) + " in dimension " + to_string(i) +
-                ", where the device allows 1 to " + to_string(limits.max_workgroup_size[i]));
-    invocations *= size;
-  }
-  require(invocations <= limits.max_workgroup_invocations, desc.label,
-          to_string(invocations) + " invocations in a workgroup are more than the device's " +
-              to_string(limits.max_workgroup_invocations));
-}
 
 /// Each id is given once, and declared by one of the shaders.
 void check_specialization(const std::vector<SpecializationValue>& values, std::span<const ShaderModuleHandle> shaders,
@@ -47,20 +31,46 @@ void check_specialization(const std::vector<SpecializationValue>& values, std::s
   }
 }
 
-/// What a device must have room for, whatever the pipeline's kind.
-void check_interface(const PipelineInterface& interface, const std::string& label, const Limits& limits) {
-  require(interface.push_constant_size <= limits.max_push_constant_size, label,
-          "the shader's push constants have " + to_string(interface.push_constant_size) +
-              " bytes, more than the device's " + to_string(limits.max_push_constant_size));
+/// What of the interface the device has no room for, whatever the pipeline's kind.
+std::vector<Error> interface_errors(const PipelineInterface& interface, const std::string& label,
+                                    const DeviceInfo& device) {
+  std::vector<Error> errors;
+  const Limits& limits = device.limits;
+  if (interface.push_constant_size > limits.max_push_constant_size)
+    errors.emplace_back(ErrorCode::invalid_argument, label,
+                        "the shader's push constants have " + to_string(interface.push_constant_size) +
+                            " bytes, more than the device's " + to_string(limits.max_push_constant_size));
   for (const ShaderBinding& binding : interface.bindings) {
-    require(binding.set < limits.max_bind_groups, label,
-            "the shader uses descriptor set " + to_string(binding.set) + ", but the device has " +
-                to_string(limits.max_bind_groups));
-    if (binding.kind >= BindingKind::sampled_image)
-      throw Error(
-          ErrorCode::unsupported, label,
-          "the shader binds '" + binding.name + "', a sampled image or a sampler, which bind groups cannot hold");
+    if (binding.set >= limits.max_bind_groups)
+      errors.emplace_back(ErrorCode::invalid_argument, label,
+                          "the shader uses descriptor set " + to_string(binding.set) + ", but the device has " +
+                              to_string(limits.max_bind_groups));
+    if (binding.count == 0 && !device.capabilities.unsized_arrays)
+      errors.emplace_back(ErrorCode::unsupported, label,
+                          "the shader declares '" + binding.name +
+                              "', an array of descriptors without a length, which device '" + device.name +
+                              "' does not support");
   }
+  return errors;
+}
+
+void check_interface(const PipelineInterface& interface, const std::string& label, const DeviceInfo& device) {
+  const std::vector<Error> errors = interface_errors(interface, label, device);
+  if (!errors.empty()) throw errors.front();
+}
+
+/// Empty: the size is one that the device has.
+std::string workgroup_problem(const std::array<std::uint32_t, 3>& size, const Limits& limits) {
+  std::uint64_t invocations = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (size[i] == 0 || size[i] > limits.max_workgroup_size[i])
+      return "a workgroup size of " + to_string(size[i]) + " in dimension " + to_string(i) +
+             ", where the device allows 1 to " + to_string(limits.max_workgroup_size[i]);
+    invocations *= size[i];
+  }
+  if (invocations <= limits.max_workgroup_invocations) return {};
+  return to_string(invocations) + " invocations in a workgroup are more than the device's " +
+         to_string(limits.max_workgroup_invocations);
 }
 
 void check_stage(const ShaderModuleHandle& shader, ShaderStage stage, const std::string& label,
@@ -115,13 +125,36 @@ void check_records(const ShaderRecords& records, const Shaders& shaders, const s
 
 }  // namespace
 
+std::vector<std::string> refusals(const ShaderModuleHandle& shader, const DeviceInfo& device) {
+  std::vector<std::string> reasons;
+  const ShaderReflection& reflection = shader->reflection();
+  for (const Error& error : interface_errors(combined_interface({&shader, 1}, ""), "", device))
+    reasons.emplace_back(error.what());
+  if (reflection.stage != ShaderStage::compute) {
+    if (!device.capabilities.ray_tracing_pipeline)
+      reasons.push_back("device '" + device.name + "' has no ray tracing pipelines");
+    return reasons;
+  }
+  // What a constant sets is only known when a pipeline is made.
+  std::array<std::uint32_t, 3> size = reflection.workgroup_size;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (reflection.workgroup_size_constant[i]) size[i] = 1;
+  if (const std::string problem = workgroup_problem(size, device.limits); !problem.empty()) reasons.push_back(problem);
+  return reasons;
+}
+
 void check(const ComputePipelineDesc& desc, const DeviceInfo& device) {
   require(desc.shader != nullptr, desc.label, "a compute pipeline needs a shader");
   require(desc.shader->reflection().stage == ShaderStage::compute, desc.label,
           "the shader '" + desc.shader->label() + "' is not a compute shader");
   check_specialization(desc.specialization, {&desc.shader, 1}, desc.label);
-  check_workgroup_size(desc, device.limits);
-  check_interface(combined_interface({&desc.shader, 1}, desc.label), desc.label, device.limits);
+  std::array<std::uint32_t, 3> size = desc.shader->reflection().workgroup_size;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const SpecializationValue& given : desc.specialization)
+      if (desc.shader->reflection().workgroup_size_constant[i] == given.id) size[i] = given.value;
+  const std::string problem = workgroup_problem(size, device.limits);
+  require(problem.empty(), desc.label, problem);
+  check_interface(combined_interface({&desc.shader, 1}, desc.label, desc.unsized_array_length), desc.label, device);
 }
 
 void check(const RayTracingPipelineDesc& desc, const DeviceInfo& device) {
@@ -143,7 +176,7 @@ void check(const RayTracingPipelineDesc& desc, const DeviceInfo& device) {
   require_limit(desc.max_recursion_depth, device.limits.max_ray_recursion_depth, desc.label, "rays in flight at once");
   const std::vector<ShaderModuleHandle> shaders = shaders_of(desc);
   check_specialization(desc.specialization, shaders, desc.label);
-  check_interface(combined_interface(shaders, desc.label), desc.label, device.limits);
+  check_interface(combined_interface(shaders, desc.label, desc.unsized_array_length), desc.label, device);
 }
 
 void check(const ShaderTableDesc& desc, const DeviceInfo& device) {

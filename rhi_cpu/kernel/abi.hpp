@@ -86,6 +86,7 @@ struct Dispatch {
   const Resource* resources = nullptr;  ///< KernelInfo::resource_count of them
   const std::byte* push_constants = nullptr;
   std::uint32_t workgroup_count[3] = {1, 1, 1};
+  std::uint32_t base_workgroup[3] = {0, 0, 0};  ///< id of the first
 };
 
 /// rhi::BindingKind.
@@ -106,7 +107,9 @@ enum class Stage : std::uint32_t { compute, ray_generation, any_hit, closest_hit
 
 struct ShaderCall;
 
-/// Where a kernel expects a binding: elements [first_resource, first_resource + count) of Dispatch::resources.
+/// Where a kernel expects a binding: elements [first_resource, first_resource + count) of Dispatch::resources. An array
+/// without a length has a count of 0 and one resource, whose `data` points at its elements and whose `size` is their
+/// number.
 struct BindingSlot {
   std::uint32_t set;
   std::uint32_t binding;

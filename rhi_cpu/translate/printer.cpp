@@ -235,7 +235,7 @@ std::uint32_t Printer::first_resource_of(std::uint32_t variable) const {
   std::uint32_t first = 0;
   for (const rhi::ShaderBinding& each : reflection_.bindings) {
     if (&each == binding) break;
-    first += each.count;
+    first += std::max(each.count, 1u);  // an array without a length is behind one resource
   }
   return first;
 }
@@ -262,7 +262,9 @@ void Printer::print_members() {
     if (!has_decoration(id, spv::DecorationBinding) || binding_of(id) == nullptr) return;
     const Type& type = get<Type>(pointee(variable.basetype));
     const std::string first = fmt::format("resources[{}]", first_resource_of(id));
-    if (is_array(type))
+    if (is_array(type) && binding_of(id)->count == 0)
+      statement("const k::Resource* ", to_name(id), " = reinterpret_cast<const k::Resource*>(", first, ".data);");
+    else if (is_array(type))
       statement("const k::Resource* ", to_name(id), " = &", first, ";");
     else if (variable.storage == spv::StorageClassUniformConstant)
       statement("const ", descriptor_target(type), "* ", to_name(id), " = ", descriptor_member(type, first), ";");
@@ -287,8 +289,9 @@ void Printer::print_run() {
   statement(fmt::format(
       R"(void run(const k::Dispatch& dispatch, std::uint64_t first, std::uint64_t end) {{
   const k::uvec3 count(dispatch.workgroup_count[0], dispatch.workgroup_count[1], dispatch.workgroup_count[2]);
+  const k::uvec3 base(dispatch.base_workgroup[0], dispatch.base_workgroup[1], dispatch.base_workgroup[2]);
   for (std::uint64_t workgroup = first; workgroup < end; ++workgroup) {{
-    const k::uvec3 id(workgroup % count.x, workgroup / count.x % count.y, workgroup / count.x / count.y);
+    const k::uvec3 id = base + k::uvec3(workgroup % count.x, workgroup / count.x % count.y, workgroup / count.x / count.y);
     k::uint index = 0;
     for (k::uint z = 0; z < {2}u; ++z)
       for (k::uint y = 0; y < {1}u; ++y)
@@ -311,7 +314,7 @@ void Printer::print_info() {
     if (kind == nullptr) fail("a sampled image or sampler binding");
     slots += fmt::format("    {{{}, {}, {}, {}, k::ResourceKind::{}}},\n", binding.set, binding.binding, binding.count,
                          resources, kind);
-    resources += binding.count;
+    resources += std::max(binding.count, 1u);
   }
   const bool any = !reflection_.bindings.empty();
   if (any) statement("constexpr k::BindingSlot binding_slots[] = {\n", slots, "};");

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <iterator>
 #include <map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -34,6 +35,7 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityUniformBufferArrayDynamicIndexing,
                                             spv::CapabilityStorageBufferArrayDynamicIndexing,
                                             spv::CapabilityShaderNonUniform,
+                                            spv::CapabilityRuntimeDescriptorArray,
                                             spv::CapabilityPhysicalStorageBufferAddresses,
                                             spv::CapabilityImage1D,
                                             spv::CapabilityImageQuery,
@@ -138,7 +140,8 @@ std::string literal_string(std::span<const std::uint32_t> words) {
 
 class Checker {
  public:
-  explicit Checker(const std::string& label) : label_(label) {}
+  /// Each thing once, in the order of the module.
+  const std::vector<std::string>& unsupported() const { return unsupported_; }
 
   void check(std::span<const std::uint32_t> i) {
     // The module is not validated yet: an instruction may be too short.
@@ -184,15 +187,16 @@ class Checker {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const { refuse(label_, what); }
+  void fail(const std::string& what) {
+    if (std::find(unsupported_.begin(), unsupported_.end(), what) == unsupported_.end()) unsupported_.push_back(what);
+  }
 
   void import(std::uint32_t id, const std::string& name) {
     if (name != "GLSL.std.450" && !name.starts_with("NonSemantic.")) fail("extended instruction set " + name);
     sets_[id] = name;
   }
 
-  void check_image(std::uint32_t dimension, std::uint32_t arrayed, std::uint32_t multisampled,
-                   std::uint32_t sampled) const {
+  void check_image(std::uint32_t dimension, std::uint32_t arrayed, std::uint32_t multisampled, std::uint32_t sampled) {
     if (sampled != 2) fail("OpTypeImage of an image that is sampled");
     if (multisampled != 0) fail("OpTypeImage with several samples");
     const bool known =
@@ -200,7 +204,7 @@ class Checker {
     if (!known) fail("OpTypeImage of dimension " + dimension_name(dimension) + (arrayed != 0 ? ", arrayed," : ""));
   }
 
-  void check_decoration(std::uint32_t decoration, std::uint32_t operand) const {
+  void check_decoration(std::uint32_t decoration, std::uint32_t operand) {
     // Of a payload or a hit attribute, which its variable names too.
     if (decoration == spv::DecorationLocation && model_ != spv::ExecutionModelGLCompute) return;
     if (!contains(decorations, decoration)) fail("decoration " + decoration_name(decoration));
@@ -208,14 +212,14 @@ class Checker {
       fail("built-in " + built_in_name(operand));
   }
 
-  void check_extended(std::uint32_t set_id, std::uint32_t instruction) const {
+  void check_extended(std::uint32_t set_id, std::uint32_t instruction) {
     const auto set = sets_.find(set_id);
-    if (set == sets_.end()) fail("an extended instruction of an unknown set");
+    if (set == sets_.end()) return fail("an extended instruction of an unknown set");
     if (set->second != "GLSL.std.450") return;  // NonSemantic: may be ignored
     if (find_extended(instruction) == nullptr) fail("extended instruction " + extended_instruction_name(instruction));
   }
 
-  const std::string& label_;
+  std::vector<std::string> unsupported_;
   std::map<std::uint32_t, std::string> sets_;
   std::uint32_t model_ = spv::ExecutionModelGLCompute;
 };
@@ -224,8 +228,8 @@ class Checker {
 
 bool is_supported(spv::Op op) { return contains(structural_instructions, op) || Printer::prints(op); }
 
-void check_supported(std::span<const std::uint32_t> spirv, const std::string& label) {
-  Checker checker(label);
+std::vector<std::string> unsupported_features(std::span<const std::uint32_t> spirv, const std::string& label) {
+  Checker checker;
   for (std::size_t i = header_words; i < spirv.size();) {
     const std::size_t length = spirv[i] >> 16;
     if (length == 0 || i + length > spirv.size())
@@ -233,6 +237,17 @@ void check_supported(std::span<const std::uint32_t> spirv, const std::string& la
     checker.check(spirv.subspan(i, length));
     i += length;
   }
+  return checker.unsupported();
+}
+
+void check_supported(std::span<const std::uint32_t> spirv, const std::string& label) {
+  const std::vector<std::string> features = unsupported_features(spirv, label);
+  if (features.empty()) return;
+  std::string all;
+  for (std::size_t i = 0; i < features.size(); ++i)
+    all += (i == 0 ? "" : i + 1 == features.size() ? " and " : ", ") + features[i];
+  if (features.size() == 1) refuse(label, all);
+  throw rhi::Error(rhi::ErrorCode::unsupported, label, all + " are not supported by the CPU device");
 }
 
 }  // namespace tandem::cpu

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <spirv_cross/spirv.hpp>
 
@@ -11,9 +12,12 @@ namespace tandem::cpu {
 /// Whether the translator handles an instruction; some uses of it may be refused all the same.
 bool is_supported(spv::Op op);
 
-/// Walks the raw words and throws rhi::Error(unsupported) with the name of the first thing that the translator does not
-/// handle: a capability, extended instruction set, execution model or mode, storage class, decoration, built-in,
-/// instruction or extended instruction. Nothing unknown gets past it. The words must be a valid module.
+/// Walks the raw words and names everything that the translator does not handle: capabilities, extended instruction
+/// sets, execution models and modes, storage classes, decorations, built-ins, instructions and extended instructions.
+/// Nothing unknown gets past it. Throws rhi::Error(invalid_argument), in the name of `label`, for truncated words.
+std::vector<std::string> unsupported_features(std::span<const std::uint32_t> spirv, const std::string& label);
+
+/// Throws rhi::Error(unsupported) with all that unsupported_features() finds.
 void check_supported(std::span<const std::uint32_t> spirv, const std::string& label);
 
 }  // namespace tandem::cpu

@@ -29,13 +29,19 @@ std::uint32_t after(std::uint32_t value, std::uint32_t rounds) {
 
 }  // namespace
 
-TANDEM_DEVICE_TEST("a list is submitted once") {
+TANDEM_DEVICE_TEST("a list may be submitted again, but not added to") {
   const rhi::BufferHandle buffer = test::buffer_of(device, std::vector<std::uint32_t>(4), "buffer");
-  const rhi::CommandListHandle list = device.create_command_list("once");
+  const rhi::CommandListHandle list = device.create_command_list("again");
   list->fill({buffer}, 1);
   device.submit(list)->wait();
-  CHECK_ERROR(invalid_argument, "once: ", device.submit(list));
-  CHECK_ERROR(invalid_argument, "once: ", list->fill({buffer}, 1));
+  CHECK_ERROR(invalid_argument, "again: a command is recorded after", list->fill({buffer}, 2));
+  const rhi::CommandListHandle other = device.create_command_list("other");
+  other->fill({buffer}, 3);
+  device.submit(other);
+  CHECK(contents<std::uint32_t>(device, buffer, 4) == std::vector<std::uint32_t>(4, 3));
+  device.submit(list);
+  device.submit(list);
+  CHECK(contents<std::uint32_t>(device, buffer, 4) == std::vector<std::uint32_t>(4, 1));
   CHECK_ERROR(invalid_argument, "", device.submit(nullptr));
 }
 

@@ -11,6 +11,7 @@ namespace tandem::test {
 /// GLSL without its #version and extension lines, with every ray tracing extension enabled.
 rhi::ShaderModuleHandle plain_shader(rhi::ShaderStage stage, const std::string& glsl);
 rhi::BufferHandle plain_buffer(std::uint64_t size, rhi::BufferUsage usage);
+rhi::SamplerHandle plain_sampler(const rhi::SamplerDesc& desc);
 rhi::TextureHandle plain_texture(const rhi::TextureDesc& desc);
 rhi::AccelerationStructureHandle plain_structure(rhi::AccelerationStructure::Level level);
 rhi::RayTracingPipelineHandle plain_pipeline(const rhi::RayTracingPipelineDesc& desc);

@@ -23,6 +23,7 @@ std::vector<std::uint32_t> compile(const std::string& extension, const std::stri
 vulkan::PhysicalDevice bare_device() {
   vulkan::PhysicalDevice device;
   device.info.name = "vulkan:7";
+  device.newest_spirv = 0x00010500;
   return device;
 }
 
@@ -41,7 +42,7 @@ TEST_CASE("a ray query on a device without them is an error that names the capab
   vulkan::PhysicalDevice device = bare_device();
   CHECK_ERROR(unsupported, "RayQueryKHR, which device 'vulkan:7'",
               vulkan::check_shader_capabilities(spirv, device, "rays"));
-  device.features.ray_query = true;
+  device.features.ray_query.rayQuery = VK_TRUE;
   vulkan::check_shader_capabilities(spirv, device, "rays");
 }
 
@@ -54,11 +55,22 @@ TEST_CASE("64-bit types need their features") {
   vulkan::check_shader_capabilities(spirv, device, "doubles");
 }
 
-TEST_CASE("SPIR-V newer than Vulkan 1.2 takes is refused") {
+TEST_CASE("SPIR-V newer than the device takes is refused") {
   std::vector<std::uint32_t> spirv = compile("", "void main() { values[0] = 1; }");
   spirv[1] = 0x00010600;
-  CHECK_ERROR(unsupported, "newer: the shader is SPIR-V 1.6",
+  CHECK_ERROR(unsupported, "newer: the shader needs SPIR-V 1.6 (it takes at most 1.5), which device",
               vulkan::check_shader_capabilities(spirv, bare_device(), "newer"));
+}
+
+TEST_CASE("everything that is missing is told, not just the first") {
+  std::vector<std::uint32_t> spirv = compile("#extension GL_EXT_shader_explicit_arithmetic_types : require",
+                                             "void main() { values[0] = uint(double(float16_t(values[1])) * 1.5lf); }");
+  spirv[1] = 0x00010600;
+  const std::vector<std::string> missing = vulkan::missing_capabilities(spirv, bare_device());
+  REQUIRE(missing.size() == 3);
+  CHECK(missing[0].find("SPIR-V 1.6") == 0);
+  CHECK(missing[1] == "the SPIR-V capability Float16");
+  CHECK(missing[2] == "the SPIR-V capability Float64");
 }
 
 TEST_CASE("a capability that nobody knows is refused by number") {

@@ -25,8 +25,14 @@ std::string capability_names(const rhi::Capabilities& capabilities) {
   add(capabilities.null_acceleration_structure, "null structures");
   add(capabilities.buffer_references, "buffer references");
   add(capabilities.non_uniform_indexing, "non-uniform indexing");
+  add(capabilities.unsized_arrays, "unsized arrays");
+  add(capabilities.partially_bound, "partially bound arrays");
+  add(capabilities.cube_arrays, "cube arrays");
   add(capabilities.scalar_block_layout, "scalar layout");
+  add(capabilities.shader_int8, "int8");
+  add(capabilities.shader_int16, "int16");
   add(capabilities.shader_int64, "int64");
+  add(capabilities.shader_float16, "float16");
   add(capabilities.shader_float64, "float64");
   add(capabilities.timestamps, "timestamps");
   return names.empty() ? "none" : names;

@@ -21,6 +21,19 @@ const char* kind_name(rhi::DeviceKind kind) {
   return "unknown";
 }
 
+namespace {
+
+nlohmann::ordered_json to_json(const rhi::FormatSupport& support) {
+  return {{"storage", support.storage},
+          {"storage_atomic", support.storage_atomic},
+          {"sampled", support.sampled},
+          {"filtered", support.filtered},
+          {"uniform_texel_buffer", support.uniform_texel_buffer},
+          {"storage_texel_buffer", support.storage_texel_buffer}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const rhi::DeviceInfo& device) {
   return {{"name", device.name},     {"backend", device.backend}, {"description", device.description},
           {"driver", device.driver}, {"api", device.api},         {"kind", kind_name(device.kind)}};
@@ -37,8 +50,14 @@ nlohmann::ordered_json to_json_in_full(const rhi::DeviceInfo& device) {
                           {"null_acceleration_structure", capabilities.null_acceleration_structure},
                           {"buffer_references", capabilities.buffer_references},
                           {"non_uniform_indexing", capabilities.non_uniform_indexing},
+                          {"unsized_arrays", capabilities.unsized_arrays},
+                          {"partially_bound", capabilities.partially_bound},
+                          {"cube_arrays", capabilities.cube_arrays},
                           {"scalar_block_layout", capabilities.scalar_block_layout},
+                          {"shader_int8", capabilities.shader_int8},
+                          {"shader_int16", capabilities.shader_int16},
                           {"shader_int64", capabilities.shader_int64},
+                          {"shader_float16", capabilities.shader_float16},
                           {"shader_float64", capabilities.shader_float64},
                           {"timestamps", capabilities.timestamps}};
   const rhi::Limits& limits = device.limits;
@@ -54,6 +73,8 @@ nlohmann::ordered_json to_json_in_full(const rhi::DeviceInfo& device) {
                     {"max_geometry_count", limits.max_geometry_count},
                     {"max_primitive_count", limits.max_primitive_count},
                     {"max_instance_count", limits.max_instance_count}};
+  for (std::size_t i = 0; i < device.formats.size(); ++i)
+    json["formats"][std::string(rhi::info_of(static_cast<rhi::TextureFormat>(i)).name)] = to_json(device.formats[i]);
   return json;
 }
 

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "rhi/error.hpp"
@@ -125,4 +126,47 @@ TEST_CASE("files that include each other without end are refused") {
   CHECK(contains(error_of("pipe.glsl"), "it is a pipe"));
   std::filesystem::create_symlink("/dev/zero", folder.path() / "zero.glsl");
   CHECK(contains(error_of("zero.glsl"), "it is a device"));
+}
+
+TEST_CASE("defines come before the source") {
+  const std::string source = R"(#version 460
+layout(local_size_x = SIZE) in;
+layout(binding = 0) buffer B { TYPE values[]; };
+void main() { values[0] += TYPE(SIZE); }
+)";
+  const auto size_of = [&](const std::vector<glsl::Define>& defines) {
+    const auto words = glsl::compile(source, rhi::ShaderStage::compute, "source", {.defines = defines});
+    return rhi::reflect(words, "source").workgroup_size[0];
+  };
+  CHECK(size_of({{"SIZE", "7"}, {"TYPE", "float"}}) == 7);
+  CHECK(size_of({{"SIZE", "(3 + 2)"}, {"TYPE", "uint"}}) == 5);
+  CHECK_THROWS_WITH_AS(size_of({{"SIZE", "7"}, {"4", "float"}}), doctest::Contains("'4' cannot be defined"),
+                       rhi::Error);
+  CHECK_THROWS_WITH_AS(size_of({{"SIZE", "7\n#define TYPE float"}}), doctest::Contains("'SIZE' cannot be defined"),
+                       rhi::Error);
+}
+
+TEST_CASE("SPIR-V is written in the version asked for") {
+  using enum glsl::SpirvVersion;
+  const auto version_of = [](glsl::SpirvVersion version) {
+    return glsl::compile("#version 460\nvoid main() {}", rhi::ShaderStage::compute, "empty", {.spirv = version})[1];
+  };
+  CHECK(version_of(v1_0) == 0x00010000);
+  CHECK(version_of(v1_3) == 0x00010300);
+  CHECK(version_of(v1_4) == 0x00010400);
+  CHECK(version_of(v1_5) == 0x00010500);
+  CHECK(version_of(v1_6) == 0x00010600);
+}
+
+TEST_CASE("a file's extension names its stage") {
+  CHECK(glsl::stage_of("a/b.comp") == rhi::ShaderStage::compute);
+  CHECK(glsl::stage_of("b.rchit.glsl") == rhi::ShaderStage::closest_hit);
+  CHECK_FALSE(glsl::stage_of("b.glsl").has_value());
+  CHECK_FALSE(glsl::stage_of("b.frag").has_value());
+  const test::ScratchFolder folder;
+  const std::filesystem::path file = folder.path() / "shader.comp";
+  std::ofstream(file) << valid;
+  CHECK(rhi::reflect(glsl::compile_file(file), "file").workgroup_size[0] == 4);
+  CHECK_THROWS_WITH_AS(glsl::compile_file(folder.path() / "shader.vert"), doctest::Contains("names no stage"),
+                       rhi::Error);
 }

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "rhi_vulkan/vulkan.hpp"
+
+namespace tandem::vulkan {
+
+/// The features that a device is created with: all that Tandem has a use for and the hardware offers. What belongs to
+/// an extension is all false where the device lacks it.
+struct EnabledFeatures {
+  vk::PhysicalDeviceFeatures core;
+  vk::PhysicalDeviceVulkan11Features vulkan11;
+  vk::PhysicalDeviceVulkan12Features vulkan12;
+  bool has_vulkan13 = false;
+  vk::PhysicalDeviceVulkan13Features vulkan13;
+  vk::PhysicalDeviceRayQueryFeaturesKHR ray_query;
+  vk::PhysicalDeviceRayTracingPipelineFeaturesKHR ray_tracing_pipeline;
+  vk::PhysicalDeviceRayTracingMaintenance1FeaturesKHR ray_tracing_maintenance1;
+  vk::PhysicalDeviceRobustness2FeaturesEXT robustness2;
+  vk::PhysicalDeviceShaderClockFeaturesKHR shader_clock;
+  vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT atomic_float;
+  vk::PhysicalDeviceShaderAtomicFloat2FeaturesEXT atomic_float2;
+  vk::PhysicalDeviceShaderImageAtomicInt64FeaturesEXT image_atomic_int64;
+  vk::PhysicalDeviceWorkgroupMemoryExplicitLayoutFeaturesKHR explicit_workgroup_layout;
+};
+
+EnabledFeatures choose_features(const vk::raii::PhysicalDevice& device);
+
+/// The device extensions that these features come from.
+std::vector<const char*> extensions_of(const EnabledFeatures& enabled);
+
+/// A device with one queue of the family and these features.
+vk::raii::Device create_logical_device(const vk::raii::PhysicalDevice& device, const EnabledFeatures& enabled,
+                                       std::uint32_t queue_family);
+
+}  // namespace tandem::vulkan
