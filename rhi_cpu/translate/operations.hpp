@@ -106,6 +106,7 @@ inline constexpr Operation operations[] = {
     {spv::OpConvertSToF, Shape::conversion, "convert", Sign::as_signed},
     {spv::OpConvertUToF, Shape::conversion, "convert", Sign::as_unsigned},
     {spv::OpFConvert, Shape::conversion, "convert"},
+    {spv::OpQuantizeToF16, Shape::call, "quantize_to_half"},
     {spv::OpSConvert, Shape::conversion, "convert", Sign::as_signed},
     {spv::OpUConvert, Shape::conversion, "convert", Sign::as_unsigned},
 

@@ -208,6 +208,7 @@ void Printer::print_module() {
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
+  if (has_halves()) statement("#include \"rhi_cpu/kernel/half.hpp\"");
   statement("");
   statement("namespace {");
   statement("");

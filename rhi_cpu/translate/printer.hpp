@@ -96,6 +96,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   bool is_array(const Type& type) const { return cpu::is_array(*this, type); }
   bool is_runtime_array(const Type& type) const { return is_array(type) && array_length(type) == 0; }
   bool is_opaque(const Type& type) const;
+  bool has_halves() const;
   std::string constant_text(const spirv_cross::SPIRConstant& constant);
   std::string scalar_text(const spirv_cross::SPIRConstant& constant, BaseType base, std::uint32_t column,
                           std::uint32_t row) const;

@@ -25,6 +25,7 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityInt16,
                                             spv::CapabilityInt8,
                                             spv::CapabilityFloat64,
+                                            spv::CapabilityFloat16,
                                             spv::CapabilityStorageBuffer16BitAccess,
                                             spv::CapabilityUniformAndStorageBuffer16BitAccess,
                                             spv::CapabilityStoragePushConstant16,
@@ -167,7 +168,7 @@ class Checker {
         if (!contains(storage_classes, word(2))) fail("storage class " + storage_class_name(word(2)));
         break;
       case spv::OpTypeFloat:
-        if (word(2) != 32 && word(2) != 64) fail(fmt::format("OpTypeFloat {}", word(2)));
+        if (word(2) != 16 && word(2) != 32 && word(2) != 64) fail(fmt::format("OpTypeFloat {}", word(2)));
         break;
       case spv::OpDecorate:
         check_decoration(word(2), word(3));
