@@ -105,15 +105,17 @@ constexpr spv::Decoration decorations[] = {
     spv::DecorationNonReadable,      spv::DecorationBinding,       spv::DecorationDescriptorSet,
     spv::DecorationOffset,           spv::DecorationNoContraction, spv::DecorationNoSignedWrap,
     spv::DecorationNoUnsignedWrap,   spv::DecorationNonUniform,    spv::DecorationAliasedPointer,
-    spv::DecorationRestrictPointer,  spv::DecorationUniform};
+    spv::DecorationRestrictPointer,  spv::DecorationUniform,       spv::DecorationFPRoundingMode,
+    spv::DecorationUniformId,        spv::DecorationUserSemantic,  spv::DecorationUserTypeGOOGLE,
+    spv::DecorationCounterBuffer};
 
 /// Those that SPIRV-Cross makes declarations and control flow of; of every other one, Printer makes C++.
 constexpr spv::Op structural_instructions[] = {
     spv::OpSourceContinued, spv::OpSource, spv::OpSourceExtension, spv::OpName, spv::OpMemberName, spv::OpString,
     spv::OpModuleProcessed, spv::OpExtension, spv::OpExtInstImport, spv::OpMemoryModel, spv::OpEntryPoint,
-    spv::OpExecutionMode, spv::OpExecutionModeId, spv::OpCapability, spv::OpDecorate, spv::OpMemberDecorate,
-    spv::OpDecorateString, spv::OpMemberDecorateString, spv::OpDecorationGroup, spv::OpGroupDecorate,
-    spv::OpGroupMemberDecorate,
+    spv::OpExecutionMode, spv::OpExecutionModeId, spv::OpCapability, spv::OpDecorate, spv::OpDecorateId,
+    spv::OpMemberDecorate, spv::OpDecorateString, spv::OpMemberDecorateString, spv::OpDecorationGroup,
+    spv::OpGroupDecorate, spv::OpGroupMemberDecorate,
     // types and constants
     spv::OpTypeVoid, spv::OpTypeBool, spv::OpTypeInt, spv::OpTypeFloat, spv::OpTypeVector, spv::OpTypeMatrix,
     spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypeForwardPointer, spv::OpTypePointer,
@@ -171,6 +173,7 @@ class Checker {
         if (word(2) != 16 && word(2) != 32 && word(2) != 64) fail(fmt::format("OpTypeFloat {}", word(2)));
         break;
       case spv::OpDecorate:
+      case spv::OpDecorateId:
         check_decoration(word(2), word(3));
         break;
       case spv::OpMemberDecorate:
@@ -204,6 +207,8 @@ class Checker {
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) const {
     // Of a payload or a hit attribute, which its variable names too.
     if (decoration == spv::DecorationLocation && model_ != spv::ExecutionModelGLCompute) return;
+    if (decoration == spv::DecorationFPRoundingMode && operand != spv::FPRoundingModeRTE)
+      fail("a rounding mode other than to the nearest");
     if (!contains(decorations, decoration)) fail("decoration " + decoration_name(decoration));
     if (decoration == spv::DecorationBuiltIn && !contains(built_ins, operand))
       fail("built-in " + built_in_name(operand));
