@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "rhi_cpu/kernel/atomics.hpp"
 #include "rhi_cpu/kernel/half_conversion.hpp"
 #include "rhi_cpu/kernel/types.hpp"
 
@@ -60,6 +61,11 @@ class half {
   }
 
   std::uint16_t bits_;
+};
+
+template <>
+struct MachineWord<half> {
+  using type = std::uint16_t;
 };
 
 /// What the functions of kernel/math.hpp compute with before they round.

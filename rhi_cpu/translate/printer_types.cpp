@@ -26,7 +26,9 @@ bool Printer::has_halves() const {
 
 std::string Printer::type_name(const Type& type) {
   if (is_pointer(type)) {
-    if (type.storage != spv::StorageClassPhysicalStorageBuffer) fail("a pointer as a value");
+    const bool is_writable =
+        type.storage != spv::StorageClassPushConstant && type.storage != spv::StorageClassShaderRecordBufferKHR;
+    if (!is_buffer(type.storage) || !is_writable) fail("a pointer as a value");
     return "std::byte*";
   }
   if (is_array(type))
