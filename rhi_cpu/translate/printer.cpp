@@ -63,6 +63,8 @@ void Printer::set_up_backend() {
   backend.double_literal_suffix = false;
   backend.uint32_t_literal_suffix = true;
   backend.long_long_literal_suffix = true;
+  backend.int16_t_literal_suffix = "";
+  backend.uint16_t_literal_suffix = "";
   backend.support_64bit_switch = true;
   backend.support_precise_qualifier = false;
   backend.allow_precision_qualifiers = false;
