@@ -9,6 +9,7 @@
 #include <spirv_cross/spirv_cross.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi/reflected_spirv.hpp"
 #include "rhi/spirv_validation.hpp"
 
 namespace tandem::rhi {
@@ -151,7 +152,7 @@ std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::strin
 class Reflector {
  public:
   Reflector(std::span<const std::uint32_t> spirv, std::string_view label)
-      : compiler_(spirv.data(), spirv.size()), label_(label) {}
+      : compiler_(without_composite_nulls(spirv)), used_as_values_(variables_used_as_values(spirv)), label_(label) {}
 
   ShaderReflection reflect() {
     const auto entry_points = compiler_.get_entry_points_and_stages();
@@ -161,8 +162,9 @@ class Reflector {
     result_.entry_point = entry_points[0].name;
     result_.stage = stage_of(entry_points[0].execution_model, label_);
 
-    const spirv_cross::ShaderResources resources =
-        compiler_.get_shader_resources(compiler_.get_active_interface_variables());
+    auto active = compiler_.get_active_interface_variables();
+    active.insert(used_as_values_.begin(), used_as_values_.end());
+    const spirv_cross::ShaderResources resources = compiler_.get_shader_resources(active);
     refuse(resources.subpass_inputs, "a subpass input");
     refuse(resources.atomic_counters, "an atomic counter");
     add(resources.uniform_buffers, BindingKind::uniform_buffer);
@@ -288,6 +290,7 @@ class Reflector {
   }
 
   spirv_cross::Compiler compiler_;
+  std::vector<std::uint32_t> used_as_values_;
   std::string_view label_;
   ShaderReflection result_;
 };

@@ -93,7 +93,7 @@ void check_format(Context& context, const FormatCase& format_case, TextureFormat
 
 void add_format_cases(const Group& group) {
   const FormatCase kinds[] = {
-      {ComponentKind::unorm, "", "float", {{{0, 1, 0.2, 0.7}, {1, 0.2, 0, 1}, {-3, 7, 0.9, 0.1}, {0.3, 0.6, 1, 0}}}},
+      {ComponentKind::unorm, "", "float", {{{0, 1, 0.2, 0.71}, {1, 0.2, 0, 1}, {-3, 7, 0.93, 0.12}, {0.31, 0.6, 1, 0}}}},
       {ComponentKind::snorm, "", "float", {{{0, 1, -0.2, -1}, {-1, 0.2, 0, 1}, {-3, 7, 0.9, -0.1}, {0.3, -0.6, 1, 0}}}},
       {ComponentKind::floating,
        "",
@@ -262,7 +262,7 @@ void main() {
     ShaderRun run = {.label = "uniform texel buffer", .glsl = R"(
 layout(local_size_x = 1) in;
 layout(binding = 0) buffer Answers { uint answers[5]; };
-layout(binding = 1) uniform usamplerBuffer texels;
+layout(binding = 1) uniform utextureBuffer texels;
 void main() {
   uvec4 texel = texelFetch(texels, 2);
   for (int i = 0; i < 4; ++i) answers[i] = texel[i];

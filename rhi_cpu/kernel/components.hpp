@@ -237,6 +237,10 @@ constexpr T shift_right(const T& a, const Count& count) {
 
 // Conversions.
 
+/// What a function computes with before it rounds to its result, once: the type itself, or float for a half.
+constexpr float widened(float x) { return x; }
+constexpr double widened(double x) { return x; }
+
 /// Component-wise static_cast where that is defined for every value.
 template <typename To, typename From>
 constexpr To convert(const From& from) {
@@ -250,8 +254,9 @@ constexpr To float_to_signed(const From& from) {
   using C = component_t<To>;
   using F = component_t<From>;
   return each(
-      [](F x) {
-        constexpr F limit = static_cast<F>(std::uint64_t{1} << (8 * sizeof(C) - 1));
+      [](F narrow) {
+        const auto x = widened(narrow);
+        constexpr auto limit = static_cast<std::remove_const_t<decltype(x)>>(std::uint64_t{1} << (8 * sizeof(C) - 1));
         return x >= -limit && x < limit ? static_cast<C>(x) : std::numeric_limits<C>::min();
       },
       from);
@@ -263,9 +268,11 @@ constexpr To float_to_unsigned(const From& from) {
   using C = component_t<To>;
   using F = component_t<From>;
   return each(
-      [](F x) {
-        constexpr F limit = F{2} * static_cast<F>(std::uint64_t{1} << (8 * sizeof(C) - 1));
-        if (!(x > F{-1})) return C{0};
+      [](F narrow) {
+        const auto x = widened(narrow);
+        using W = std::remove_const_t<decltype(x)>;
+        constexpr W limit = W{2} * static_cast<W>(std::uint64_t{1} << (8 * sizeof(C) - 1));
+        if (!(x > W{-1})) return C{0};
         return x < limit ? static_cast<C>(x) : std::numeric_limits<C>::max();
       },
       from);

@@ -56,8 +56,9 @@ inline glm::vec<length, T> reflect(const glm::vec<length, T>& incident, const gl
 }
 
 /// Zero on total internal reflection.
-template <int length, typename T>
-inline glm::vec<length, T> refract(const glm::vec<length, T>& incident, const glm::vec<length, T>& n, T eta) {
+template <int length, typename T, typename Eta>
+inline glm::vec<length, T> refract(const glm::vec<length, T>& incident, const glm::vec<length, T>& n, Eta any_eta) {
+  const T eta = static_cast<T>(any_eta);
   const T cosine = kernel::dot(n, incident);
   const T k = T{1} - eta * (eta * (T{1} - cosine * cosine));
   if (k < T{0}) return glm::vec<length, T>(T{0});
@@ -72,8 +73,8 @@ template <typename T>
 inline T reflect(T incident, T n) {
   return incident - n * (T{2} * (n * incident));
 }
-template <typename T>
-inline T refract(T incident, T n, T eta) {
+template <typename T, typename Eta>
+inline T refract(T incident, T n, Eta eta) {
   return kernel::refract(glm::vec<1, T>(incident), glm::vec<1, T>(n), eta).x;
 }
 

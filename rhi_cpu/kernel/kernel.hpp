@@ -7,6 +7,7 @@
 #include "rhi_cpu/kernel/components.hpp"
 #include "rhi_cpu/kernel/geometry.hpp"
 #include "rhi_cpu/kernel/images.hpp"
+#include "rhi_cpu/kernel/integer_dot.hpp"
 #include "rhi_cpu/kernel/math.hpp"
 #include "rhi_cpu/kernel/matrices.hpp"
 #include "rhi_cpu/kernel/memory.hpp"

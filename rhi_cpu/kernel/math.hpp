@@ -23,9 +23,14 @@ inline constexpr T all_whole_from = T(1) / std::numeric_limits<T>::epsilon();
 template <typename T>
 inline T trunc(const T& a) {
   using F = component_t<T>;
-  using I = std::conditional_t<sizeof(F) == 4, std::int32_t, std::int64_t>;
   return each(
-      [](F x) { return std::fabs(x) < all_whole_from<F> ? std::copysign(static_cast<F>(static_cast<I>(x)), x) : x; },
+      [](F narrow) {
+        const auto x = widened(narrow);
+        using W = std::remove_const_t<decltype(x)>;
+        using I = std::conditional_t<sizeof(W) == 4, std::int32_t, std::int64_t>;
+        return std::fabs(x) < all_whole_from<W> ? static_cast<F>(std::copysign(static_cast<W>(static_cast<I>(x)), x))
+                                                : narrow;
+      },
       a);
 }
 template <typename T>
@@ -44,7 +49,7 @@ inline T ceil(const T& a) {
   return each(
       [](F x) {
         const F whole = kernel::trunc(x);
-        return whole < x ? std::copysign(whole + F{1}, x) : whole;
+        return whole < x ? static_cast<F>(std::copysign(widened(whole + F{1}), widened(x))) : whole;
       },
       a);
 }
@@ -53,10 +58,12 @@ template <typename T>
 inline T round_even(const T& a) {
   using F = component_t<T>;
   return each(
-      [](F x) {
-        const F magnitude = std::fabs(x);
-        if (!(magnitude < all_whole_from<F>)) return x;
-        return std::copysign((magnitude + all_whole_from<F>)-all_whole_from<F>, x);
+      [](F narrow) {
+        const auto x = widened(narrow);
+        const auto magnitude = std::fabs(x);
+        constexpr auto whole_from = all_whole_from<std::remove_const_t<decltype(x)>>;
+        return magnitude < whole_from ? static_cast<F>(std::copysign((magnitude + whole_from) - whole_from, x))
+                                      : narrow;
       },
       a);
 }
@@ -70,10 +77,10 @@ inline T abs(const T& a) {
   using C = component_t<T>;
   return each(
       [](C x) {
-        if constexpr (std::is_floating_point_v<C>)
-          return std::fabs(x);
-        else
+        if constexpr (std::is_integral_v<C>)
           return x < 0 ? kernel::negate(x) : x;
+        else
+          return static_cast<C>(std::fabs(widened(x)));
       },
       a);
 }
@@ -111,7 +118,7 @@ constexpr T clamp(const T& a, const T& low, const T& high) {
 
 template <typename T>
 constexpr T mix(const T& a, const T& b, const T& t) {
-  return a * (T(1) - t) + b * t;
+  return a * (T(component_t<T>(1)) - t) + b * t;
 }
 template <typename T>
 constexpr T step(const T& edge, const T& a) {
@@ -120,8 +127,9 @@ constexpr T step(const T& edge, const T& a) {
 }
 template <typename T>
 constexpr T smooth_step(const T& low, const T& high, const T& a) {
-  const T t = kernel::clamp((a - low) / (high - low), T(0), T(1));
-  return t * (t * (T(3) - T(2) * t));
+  using F = component_t<T>;
+  const T t = kernel::clamp((a - low) / (high - low), T(F(0)), T(F(1)));
+  return t * (t * (T(F(3)) - T(F(2)) * t));
 }
 /// a * b + c with two roundings, as Mesa's software rasteriser computes it.
 template <typename T>
@@ -131,12 +139,13 @@ constexpr T fma(const T& a, const T& b, const T& c) {
 
 template <typename T>
 inline T sqrt(const T& a) {
-  return each([](auto x) { return std::sqrt(x); }, a);
+  using F = component_t<T>;
+  return each([](F x) { return static_cast<F>(std::sqrt(widened(x))); }, a);
 }
 template <typename T>
 inline T inverse_sqrt(const T& a) {
   using F = component_t<T>;
-  return each([](F x) { return F{1} / std::sqrt(x); }, a);
+  return each([](F x) { return static_cast<F>(1 / std::sqrt(widened(x))); }, a);
 }
 
 template <typename T>
@@ -148,10 +157,11 @@ constexpr T degrees(const T& a) {
   return a * component_t<T>(57.29577951308232);
 }
 
-#define TANDEM_LIBRARY_FUNCTION(name)                    \
-  template <typename T>                                  \
-  inline T name(const T& a) {                            \
-    return each([](auto x) { return std::name(x); }, a); \
+#define TANDEM_LIBRARY_FUNCTION(name)                                          \
+  template <typename T>                                                        \
+  inline T name(const T& a) {                                                  \
+    using F = component_t<T>;                                                  \
+    return each([](F x) { return static_cast<F>(std::name(widened(x))); }, a); \
   }
 TANDEM_LIBRARY_FUNCTION(sin)
 TANDEM_LIBRARY_FUNCTION(cos)
@@ -174,11 +184,13 @@ TANDEM_LIBRARY_FUNCTION(log2)
 /// The angle of (x, y).
 template <typename T>
 inline T atan2(const T& y, const T& x) {
-  return each([](auto b, auto a) { return std::atan2(b, a); }, y, x);
+  using F = component_t<T>;
+  return each([](F b, F a) { return static_cast<F>(std::atan2(widened(b), widened(a))); }, y, x);
 }
 template <typename T>
 inline T pow(const T& a, const T& exponent) {
-  return each([](auto x, auto y) { return std::pow(x, y); }, a, exponent);
+  using F = component_t<T>;
+  return each([](F x, F y) { return static_cast<F>(std::pow(widened(x), widened(y))); }, a, exponent);
 }
 
 /// Splits into a fraction with the sign of `a` and the whole part.
@@ -186,7 +198,9 @@ template <typename T>
 inline T modf(const T& a, T& whole) {
   whole = kernel::trunc(a);
   using F = component_t<T>;
-  return each([](F x, F w) { return std::copysign(kernel::is_inf(x) ? F{0} : x - w, x); }, a, whole);
+  return each(
+      [](F x, F w) { return static_cast<F>(std::copysign(widened(kernel::is_inf(x) ? F{0} : x - w), widened(x))); }, a,
+      whole);
 }
 
 /// Splits into a significand in [0.5, 1) and an exponent of two.
@@ -196,27 +210,28 @@ inline T frexp(const T& a, Exponent& exponent) {
   exponent = each(
       [](F x) {
         int e = 0;
-        if (x == x && !kernel::is_inf(x)) std::frexp(x, &e);
+        if (x == x && !kernel::is_inf(x)) std::frexp(widened(x), &e);
         return std::int32_t{e};
       },
       a);
   return each(
       [](F x) {
         int e = 0;
-        return kernel::is_inf(x) ? x : std::frexp(x, &e);
+        return kernel::is_inf(x) ? x : static_cast<F>(std::frexp(widened(x), &e));
       },
       a);
 }
 /// Exponents of any width: beyond those that a float has, one is as good as another.
 template <typename T, typename Exponent>
 inline T ldexp(const T& a, const Exponent& exponent) {
+  using F = component_t<T>;
   constexpr int beyond_all = 1 << 15;
   return each(
-      [](auto x, auto e) {
+      [](F x, auto e) {
         const int power = std::cmp_greater(e, beyond_all) ? beyond_all
                           : std::cmp_less(e, -beyond_all) ? -beyond_all
                                                           : static_cast<int>(e);
-        return std::ldexp(x, power);
+        return static_cast<F>(std::ldexp(widened(x), power));
       },
       a, exponent);
 }

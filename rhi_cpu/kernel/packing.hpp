@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "rhi_cpu/kernel/half_conversion.hpp"
 #include "rhi_cpu/kernel/math.hpp"
 #include "rhi_cpu/kernel/types.hpp"
 
@@ -49,35 +50,17 @@ inline vec4 unpack_snorm_4x8(std::uint32_t p) { return unpack_signed<4>(p, 127.0
 inline vec2 unpack_unorm_2x16(std::uint32_t p) { return unpack_unsigned<2>(p, 65535.0f); }
 inline vec2 unpack_snorm_2x16(std::uint32_t p) { return unpack_signed<2>(p, 32767.0f); }
 
-/// The nearest IEEE 754 binary16, halves to even.
-inline std::uint32_t float_to_half(float value) {
-  const auto bits = std::bit_cast<std::uint32_t>(value);
-  const std::uint32_t sign = (bits >> 16) & 0x8000u;
-  const std::uint32_t magnitude = bits & 0x7fffffffu;
-  if (magnitude > 0x7f800000u) return sign | 0x7e00u;   // NaN
-  if (magnitude >= 0x477ff000u) return sign | 0x7c00u;  // rounds to 65536 or more
-  if (magnitude < 0x38800000u) {                        // subnormal: a multiple of 2^-24
-    const float scaled = std::bit_cast<float>(magnitude) * 16777216.0f;
-    return sign | static_cast<std::uint32_t>(kernel::round_even(scaled));
-  }
-  const std::uint32_t rebiased = magnitude - 0x38000000u;
-  return sign | ((rebiased + 0xfffu + ((rebiased >> 13) & 1u)) >> 13);
-}
-
-inline float half_to_float(std::uint32_t half) {
-  const std::uint32_t sign = (half & 0x8000u) << 16;
-  const std::uint32_t exponent = (half >> 10) & 0x1fu;
-  const std::uint32_t significand = half & 0x3ffu;
-  if (exponent == 0x1fu) return std::bit_cast<float>(sign | 0x7f800000u | (significand << 13));
-  if (exponent == 0) {
-    const float magnitude = static_cast<float>(significand) / 16777216.0f;
-    return sign != 0 ? -magnitude : magnitude;
-  }
-  return std::bit_cast<float>(sign | ((exponent + 112u) << 23) | (significand << 13));
-}
-
 inline std::uint32_t pack_half_2x16(const vec2& v) { return float_to_half(v.x) | (float_to_half(v.y) << 16); }
 inline vec2 unpack_half_2x16(std::uint32_t p) { return {half_to_float(p & 0xffffu), half_to_float(p >> 16)}; }
+
+/// The nearest float that is a normal half, an infinity or, below those, zero.
+template <typename T>
+inline T quantize_to_half(const T& a) {
+  constexpr float smallest_normal = 6.103515625e-05f;
+  return each(
+      [](float x) { return std::fabs(x) < smallest_normal ? std::copysign(0.0f, x) : half_to_float(float_to_half(x)); },
+      a);
+}
 
 inline double pack_double_2x32(const uvec2& v) {
   return std::bit_cast<double>(std::uint64_t{v.x} | (std::uint64_t{v.y} << 32));

@@ -106,6 +106,7 @@ inline constexpr Operation operations[] = {
     {spv::OpConvertSToF, Shape::conversion, "convert", Sign::as_signed},
     {spv::OpConvertUToF, Shape::conversion, "convert", Sign::as_unsigned},
     {spv::OpFConvert, Shape::conversion, "convert"},
+    {spv::OpQuantizeToF16, Shape::call, "quantize_to_half"},
     {spv::OpSConvert, Shape::conversion, "convert", Sign::as_signed},
     {spv::OpUConvert, Shape::conversion, "convert", Sign::as_unsigned},
 
@@ -128,6 +129,8 @@ inline constexpr Operation operations[] = {
     {spv::OpAtomicIDecrement, Shape::atomic, "subtract"},
     {spv::OpAtomicIAdd, Shape::atomic, "add"},
     {spv::OpAtomicFAddEXT, Shape::atomic, "add"},
+    {spv::OpAtomicFMinEXT, Shape::atomic, "min"},
+    {spv::OpAtomicFMaxEXT, Shape::atomic, "max"},
     {spv::OpAtomicISub, Shape::atomic, "subtract"},
     {spv::OpAtomicSMin, Shape::atomic, "min", Sign::as_signed},
     {spv::OpAtomicUMin, Shape::atomic, "min", Sign::as_unsigned},
@@ -138,7 +141,6 @@ inline constexpr Operation operations[] = {
     {spv::OpAtomicXor, Shape::atomic, "xor"},
 
     // rays
-    {spv::OpConvertUToAccelerationStructureKHR, Shape::call, "structure_at", Sign::as_unsigned},
     {spv::OpRayQueryInitializeKHR, Shape::statement, "rayQueryInitializeEXT", Sign::as_unsigned},
     {spv::OpRayQueryTerminateKHR, Shape::statement, "rayQueryTerminateEXT"},
     {spv::OpRayQueryConfirmIntersectionKHR, Shape::statement, "rayQueryConfirmIntersectionEXT"},

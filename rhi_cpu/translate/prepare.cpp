@@ -9,6 +9,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi/spirv_validation.hpp"
+#include "rhi_cpu/translate/constant_folding.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
@@ -56,39 +57,6 @@ std::vector<std::uint32_t> optimize(std::span<const std::uint32_t> spirv, const 
   return result;
 }
 
-/// Replaces each OpSpecConstantOp that only picks a constant (Select by a scalar condition, CompositeExtract of a
-/// constant composite), which SPIRV-Tools folds for integers alone, by a copy of the constant that it picks. Returns
-/// whether there was one.
-bool pick_constants(std::vector<std::uint32_t>& spirv) {
-  std::vector<std::uint32_t> result(spirv.begin(), spirv.begin() + header_words);
-  std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> constants;  // declarations by result id
-  bool changed = false;
-  for_each_instruction(std::span<const std::uint32_t>(spirv), [&](std::span<const std::uint32_t> i) {
-    std::vector<std::uint32_t> instruction(i.begin(), i.end());
-    if (operation(i) == spv::OpSpecConstantOp) {
-      std::uint32_t picked = 0;
-      const auto declaration = constants.find(i[4]);
-      if (declaration != constants.end()) {
-        const std::vector<std::uint32_t>& operand = declaration->second;
-        if (i[3] == spv::OpSelect && operation(operand) == spv::OpConstantTrue) picked = i[5];
-        if (i[3] == spv::OpSelect && operation(operand) == spv::OpConstantFalse) picked = i[6];
-        if (i[3] == spv::OpCompositeExtract && operation(operand) == spv::OpConstantComposite && i.size() == 6)
-          picked = operand[3 + i[5]];
-      }
-      if (const auto constant = constants.find(picked); constant != constants.end()) {
-        instruction = constant->second;
-        instruction[2] = i[2];
-        changed = true;
-      }
-    }
-    if (const spv::Op op = operation(instruction); op >= spv::OpConstantTrue && op <= spv::OpConstantNull)
-      constants[instruction[2]] = instruction;
-    result.insert(result.end(), instruction.begin(), instruction.end());
-  });
-  if (changed) spirv = std::move(result);
-  return changed;
-}
-
 std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, const std::string& label,
                                       std::span<const rhi::SpecializationValue> values) {
   std::unordered_set<std::uint32_t> declared;
@@ -103,17 +71,10 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, cons
   }
   if (!has_specialization(spirv)) return {spirv.begin(), spirv.end()};
 
-  std::vector<std::uint32_t> result = optimize(spirv, label, [&](spvtools::Optimizer& optimizer) {
+  return fold_constants(optimize(spirv, label, [&](spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateSetSpecConstantDefaultValuePass(words));
     optimizer.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass());
-    optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
-  });
-  // What one side folds may let the other fold more.
-  while (pick_constants(result))
-    result = optimize(result, label, [](spvtools::Optimizer& optimizer) {
-      optimizer.RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass());
-    });
-  return result;
+  }));
 }
 
 /// Folding leaves what it cannot compute.

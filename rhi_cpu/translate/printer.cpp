@@ -36,6 +36,7 @@ void Printer::fail(const std::string& what) const { refuse(label_, what); }
 std::string Printer::compile() {
   set_up_backend();
   ir.fixup_reserved_names();
+  set_up_pointers();
   build_function_control_flow_graphs_and_analyze();
   set_up_names();
   set_up_variables();
@@ -62,11 +63,12 @@ void Printer::set_up_backend() {
   backend.double_literal_suffix = false;
   backend.uint32_t_literal_suffix = true;
   backend.long_long_literal_suffix = true;
+  backend.int16_t_literal_suffix = "";
+  backend.uint16_t_literal_suffix = "";
   backend.support_64bit_switch = true;
   backend.support_precise_qualifier = false;
   backend.allow_precision_qualifiers = false;
   backend.requires_relaxed_precision_analysis = false;
-  backend.native_pointers = false;
   backend.can_return_array = true;
 }
 
@@ -89,7 +91,7 @@ void Printer::set_up_names() {
   for (const std::uint32_t id : constants) {
     auto& constant = get<SPIRConstant>(id);
     const Type& type = get<Type>(constant.constant_type);
-    if (type.pointer && type.storage != spv::StorageClassPhysicalStorageBuffer) continue;
+    if (type.pointer && !is_buffer(type.storage)) continue;
     auto& decoration = ir.meta[id].decoration;
     decoration.builtin = false;
     decoration.decoration_flags.clear(spv::DecorationBuiltIn);
@@ -208,6 +210,7 @@ void Printer::print_module() {
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
+  if (has_halves()) statement("#include \"rhi_cpu/kernel/half.hpp\"");
   statement("");
   statement("namespace {");
   statement("");

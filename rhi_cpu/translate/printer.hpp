@@ -96,6 +96,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   bool is_array(const Type& type) const { return cpu::is_array(*this, type); }
   bool is_runtime_array(const Type& type) const { return is_array(type) && array_length(type) == 0; }
   bool is_opaque(const Type& type) const;
+  bool has_halves() const;
   std::string constant_text(const spirv_cross::SPIRConstant& constant);
   std::string scalar_text(const spirv_cross::SPIRConstant& constant, BaseType base, std::uint32_t column,
                           std::uint32_t row) const;
@@ -108,7 +109,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   Address address_of(std::uint32_t pointer_id);
   std::string printed(const Address& address) const;
   void print_access_chain(const Instruction& i);
-  void chain_in_buffer(const Instruction& i);
+  void chain_in_buffer(const Instruction& i, Address address, std::size_t first_index);
   void chain_in_variable(const Instruction& i);
   void index_address(Address& address, std::uint32_t index_id, std::uint32_t stride);
   std::string load_text(std::uint32_t type_id, const Address& address);
@@ -120,6 +121,14 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_array_length(const Instruction& i);
   void print_struct_memory(std::uint32_t struct_type_id);
   void print_struct_memory_functions();
+
+  // printer_pointers.cpp: pointers into buffers as values.
+  void set_up_pointers();
+  /// Refuses a pointer to what would need more than an address to be loaded.
+  void check_pointer_value(std::uint32_t pointer_id, const Address& address) const;
+  std::string pointer_value(std::uint32_t pointer_id);
+  void print_pointer_access_chain(const Instruction& i);
+  void print_pointer_relation(const Instruction& i);
 
   // printer_atomics.cpp
   std::string atomic_call(const Instruction& i, const char* function, BaseType base, const std::string& arguments);
@@ -149,6 +158,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_nothing(const Instruction&) {}
   void print_line(const Instruction& i);
   void print_memory_barrier(const Instruction& i);
+  void print_clock(const Instruction& i);
 
   // printer_operations.cpp: everything that computes.
   void print_operation(const Instruction& i, const Operation& operation);
@@ -161,6 +171,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_shift(const Instruction& i, const Operation& operation);
   void print_bit_field(const Instruction& i, const Operation& operation);
   void print_ray_query_getter(const Instruction& i, const Operation& operation);
+  void print_integer_dot(const Instruction& i);
   void print_bit_count(const Instruction& i);
   void print_bitcast(const Instruction& i);
   void check_bit_width(const Instruction& i);
@@ -176,6 +187,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_trace_ray(const Instruction& i);
   void print_execute_callable(const Instruction& i);
   void print_report_intersection(const Instruction& i);
+  void print_structure_at(const Instruction& i);
   void print_ignore_intersection(const Instruction& i);
   void print_terminate_ray(const Instruction& i);
   std::string traced_built_in(spv::BuiltIn built_in) const;
@@ -202,7 +214,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_split_into_struct(const Instruction& i, const char* function);
 
   // Operands.
-  std::string value(std::uint32_t id) { return to_expression(id); }
+  std::string value(std::uint32_t id);
   const Type& type_of(std::uint32_t id) { return get<Type>(expression_type_id(id)); }
   /// The operand as components of `base`, or of the signedness `sign`, converted when it has others.
   std::string value_as(std::uint32_t id, BaseType base);
@@ -224,6 +236,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_map<std::uint32_t, std::string> names_;           ///< of Function and Private variables' declarations
   std::unordered_map<std::uint32_t, std::uint32_t> initializers_;  ///< constant that a Function variable starts as
   std::unordered_map<std::uint32_t, Address> addresses_;           ///< pointers into buffers
+  std::unordered_set<std::uint32_t> pointer_values_;               ///< what an OpPhi or an OpReturnValue takes
   std::map<std::string, std::string> structs_;                     ///< by layout: value structs are structural types
   std::unordered_map<std::uint32_t, std::string> struct_names_;
   std::string struct_declarations_;

@@ -16,7 +16,7 @@ void Printer::print_call(const Instruction& i) {
     if (is_pointer(type) && type.storage == spv::StorageClassUniformConstant) {
       arguments += descriptor_value(argument);
     } else {
-      arguments += is_buffer_pointer(argument) ? printed(address_of(argument)) : value(argument);
+      arguments += is_buffer_pointer(argument) ? pointer_value(argument) : value(argument);
     }
   }
   const std::string text = fmt::format("{}({})", to_name(function), arguments);

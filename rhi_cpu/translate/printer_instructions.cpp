@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/format.h>
+
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 
@@ -28,6 +30,12 @@ Printer::PrintFunction Printer::by_hand(spv::Op op) {
       {spv::OpAtomicStore, &Printer::print_atomic_store},
       {spv::OpAtomicCompareExchange, &Printer::print_compare_exchange},
       {spv::OpMemoryBarrier, &Printer::print_memory_barrier},
+      {spv::OpReadClockKHR, &Printer::print_clock},
+      // pointers
+      {spv::OpPtrAccessChain, &Printer::print_pointer_access_chain},
+      {spv::OpPtrEqual, &Printer::print_pointer_relation},
+      {spv::OpPtrNotEqual, &Printer::print_pointer_relation},
+      {spv::OpPtrDiff, &Printer::print_pointer_relation},
       // images
       {spv::OpImageRead, &Printer::print_image_read},
       {spv::OpImageWrite, &Printer::print_image_write},
@@ -47,7 +55,17 @@ Printer::PrintFunction Printer::by_hand(spv::Op op) {
       {spv::OpConvertUToPtr, &Printer::print_bitcast},
       {spv::OpConvertPtrToU, &Printer::print_bitcast},
       {spv::OpBitCount, &Printer::print_bit_count},
-      // ray tracing pipelines
+      {spv::OpSDot, &Printer::print_integer_dot},
+      {spv::OpUDot, &Printer::print_integer_dot},
+      {spv::OpSUDot, &Printer::print_integer_dot},
+      {spv::OpSDotAccSat, &Printer::print_integer_dot},
+      {spv::OpUDotAccSat, &Printer::print_integer_dot},
+      {spv::OpSUDotAccSat, &Printer::print_integer_dot},
+      // promises
+      {spv::OpExpectKHR, &Printer::print_copy},
+      {spv::OpAssumeTrueKHR, &Printer::print_nothing},
+      // rays
+      {spv::OpConvertUToAccelerationStructureKHR, &Printer::print_structure_at},
       {spv::OpTraceRayKHR, &Printer::print_trace_ray},
       {spv::OpExecuteCallableKHR, &Printer::print_execute_callable},
       {spv::OpReportIntersectionKHR, &Printer::print_report_intersection},
@@ -78,5 +96,9 @@ void Printer::emit_instruction(const spirv_cross::Instruction& instruction) {
 void Printer::print_line(const Instruction& i) { emit_line_directive(i.operand(0), i.operand(1)); }
 
 void Printer::print_memory_barrier(const Instruction&) { statement("k::memory_barrier();"); }
+
+void Printer::print_clock(const Instruction& i) {
+  define(i, fmt::format("k::bit_cast<{}>(k::read_clock())", type_name(i.result_type())));
+}
 
 }  // namespace tandem::cpu

@@ -26,10 +26,8 @@ std::uint32_t Printer::pointee(std::uint32_t pointer_type_id) const { return get
 
 Printer::Address Printer::address_of(std::uint32_t pointer_id) {
   if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) return known->second;
-  if (type_of(pointer_id).storage == spv::StorageClassPhysicalStorageBuffer)
-    return {.bytes = value(pointer_id), .resource = ""};
   const auto* variable = maybe_get<SPIRVariable>(pointer_id);
-  if (variable == nullptr) fail("a pointer into a buffer that comes from neither a variable nor an access chain");
+  if (variable == nullptr || variable->phi_variable) return {.bytes = to_expression(pointer_id), .resource = ""};
   if (variable->storage == spv::StorageClassPushConstant) return {.bytes = "push_constants", .resource = ""};
   if (variable->storage == spv::StorageClassShaderRecordBufferKHR) return {.bytes = "shader_record", .resource = ""};
   if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = to_name(pointer_id)};
@@ -49,17 +47,15 @@ void Printer::index_address(Address& address, std::uint32_t index_id, std::uint3
 
 void Printer::print_access_chain(const Instruction& i) {
   if (is_buffer_pointer(i.operand(0)))
-    chain_in_buffer(i);
+    chain_in_buffer(i, address_of(i.operand(0)), 1);
   else
     chain_in_variable(i);
 }
 
-void Printer::chain_in_buffer(const Instruction& i) {
-  const std::uint32_t pointer = i.operand(0);
-  Address address = address_of(pointer);
-  std::uint32_t type_id = pointee(expression_type_id(pointer));
+void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t first_index) {
+  std::uint32_t type_id = pointee(expression_type_id(i.operand(0)));
   const Type* type = &get<Type>(type_id);
-  std::size_t k = 1;
+  std::size_t k = first_index;
   if (address.bytes.empty() && k < i.operand_count()) {
     // An array of descriptors, flattened in the order in which its elements are bound.
     std::string index;
@@ -96,6 +92,7 @@ void Printer::chain_in_buffer(const Instruction& i) {
   }
   addresses_[i.result()] = address;
   set<SPIRExpression>(i.result(), fmt::format("({})", printed(address)), i.result_type(), true);
+  if (pointer_values_.contains(i.result())) check_pointer_value(i.result(), address);
 }
 
 void Printer::chain_in_variable(const Instruction& i) {

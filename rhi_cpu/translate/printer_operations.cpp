@@ -11,6 +11,12 @@ namespace tandem::cpu {
 using spirv_cross::SPIRConstant;
 using spirv_cross::SPIRType;
 
+std::string Printer::value(std::uint32_t id) {
+  const auto address = addresses_.find(id);
+  if (address != addresses_.end() && is_buffer_pointer(id)) check_pointer_value(id, address->second);
+  return to_expression(id);
+}
+
 std::string Printer::value_as(std::uint32_t id, BaseType base) {
   const Type& type = type_of(id);
   if (type.basetype == base) return value(id);
@@ -129,6 +135,24 @@ void Printer::print_bit_field(const Instruction& i, const Operation& operation) 
 
 void Printer::check_bit_width(const Instruction& i) {
   if (type_of(i.operand(0)).width != 32) fail("a bit field instruction on other than 32 bits");
+}
+
+void Printer::print_integer_dot(const Instruction& i) {
+  const auto is_one_of = [&](spv::Op dot, spv::Op accumulating) { return i.op() == dot || i.op() == accumulating; };
+  const bool is_unsigned = is_one_of(spv::OpUDot, spv::OpUDotAccSat);
+  const bool is_mixed = is_one_of(spv::OpSUDot, spv::OpSUDotAccSat);
+  const bool accumulates = i.op() == spv::OpSDotAccSat || i.op() == spv::OpUDotAccSat || i.op() == spv::OpSUDotAccSat;
+  const auto vector = [&](std::uint32_t id, Sign sign) {
+    if (type_of(id).vecsize > 1) return value_with_sign(id, sign);
+    return fmt::format("k::unpack_4x8<std::{}int8_t>({})", sign == Sign::as_unsigned ? "u" : "", value(id));
+  };
+  const Sign result_sign = is_unsigned ? Sign::as_unsigned : Sign::as_signed;
+  const BaseType base = with_sign(get<Type>(i.result_type()).basetype, result_sign);
+  std::string text = fmt::format("k::integer_dot<{}>({}, {})", scalar_name(base), vector(i.operand(0), result_sign),
+                                 vector(i.operand(1), is_mixed ? Sign::as_unsigned : result_sign));
+  if (accumulates)
+    text = fmt::format("k::add_saturated<{}>({}, {})", scalar_name(base), text, value_as(i.operand(2), base));
+  define_as(i, text, base);
 }
 
 void Printer::print_bit_count(const Instruction& i) {

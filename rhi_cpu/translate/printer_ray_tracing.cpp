@@ -8,6 +8,7 @@
 namespace tandem::cpu {
 
 using spirv_cross::SPIRBlock;
+using spirv_cross::SPIRExpression;
 using spirv_cross::SPIRFunction;
 using spirv_cross::SPIRType;
 using spirv_cross::SPIRVariable;
@@ -122,6 +123,17 @@ void Printer::print_report_intersection(const Instruction& i) {
   define(i, fmt::format("k::reportIntersectionEXT(shader_call, {}, {})", value(i.operand(0)),
                         value_with_sign(i.operand(1), Sign::as_unsigned)));
   statement("if (shader_call.decision == k::HitDecision::terminate) ", ending());
+}
+
+void Printer::print_structure_at(const Instruction& i) {
+  // Where SPIRV-Cross hoists the result it declares a variable of the operand's type.
+  const std::uint32_t operand = i.operand(0);
+  std::string address = value(operand);
+  if (hoisted_temporaries.contains(i.result())) {
+    statement(to_name(i.result()), " = ", address, ";");
+    address = to_name(i.result());
+  }
+  set<SPIRExpression>(i.result(), fmt::format("k::structure_at({})", address), i.result_type(), true);
 }
 
 void Printer::print_ignore_intersection(const Instruction&) {

@@ -18,9 +18,17 @@ std::uint32_t Printer::array_length(const Type& type) const {
 
 bool Printer::is_opaque(const Type& type) const { return type.basetype == SPIRType::RayQuery || is_descriptor(type); }
 
+bool Printer::has_halves() const {
+  bool found = false;
+  ir.for_each_typed_id<Type>([&](std::uint32_t, const Type& type) { found |= type.basetype == Type::Half; });
+  return found;
+}
+
 std::string Printer::type_name(const Type& type) {
   if (is_pointer(type)) {
-    if (type.storage != spv::StorageClassPhysicalStorageBuffer) fail("a pointer as a value");
+    const bool is_writable =
+        type.storage != spv::StorageClassPushConstant && type.storage != spv::StorageClassShaderRecordBufferKHR;
+    if (!is_buffer(type.storage) || !is_writable) fail("a pointer as a value");
     return "std::byte*";
   }
   if (is_array(type))
@@ -100,6 +108,8 @@ std::string Printer::scalar_text(const SPIRConstant& constant, BaseType base, st
       return fmt::format("std::int64_t({})", constant.scalar_i64(column, row));
     case SPIRType::UInt64:
       return fmt::format("std::uint64_t({}u)", constant.scalar_u64(column, row));
+    case SPIRType::Half:
+      return fmt::format("k::half::from_bits({:#x})", constant.scalar_u16(column, row));
     case SPIRType::Float: {
       const std::string text = number(constant.scalar_f32(column, row), "f");
       return !text.empty() ? text : fmt::format("k::bit_cast<float>({:#x}u)", constant.scalar(column, row));

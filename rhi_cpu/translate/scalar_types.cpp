@@ -60,6 +60,8 @@ std::string scalar_name(BaseType base) {
       return "std::int64_t";
     case SPIRType::UInt64:
       return "std::uint64_t";
+    case SPIRType::Half:
+      return "k::half";
     case SPIRType::Float:
       return "float";
     case SPIRType::Double:
@@ -76,6 +78,7 @@ std::string vector_name(BaseType base, std::uint32_t length) {
                        : base == SPIRType::UInt    ? "u"
                        : base == SPIRType::Boolean ? "b"
                        : base == SPIRType::Double  ? "d"
+                       : base == SPIRType::Half    ? "f16"
                                                    : nullptr;
   if (prefix == nullptr) return fmt::format("k::vector<{}, {}>", length, scalar_name(base));
   return fmt::format("k::{}vec{}", prefix, length);

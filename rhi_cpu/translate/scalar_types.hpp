@@ -19,7 +19,7 @@ bool is_integer(BaseType base);
 /// `base` with the signedness that an instruction wants; what is no integer, and with Sign::any everything, stays.
 BaseType with_sign(BaseType base, Sign sign);
 
-/// `base` must be void, bool, an integer or a floating-point number of 32 or 64 bits; throws std::logic_error else.
+/// `base` must be void, bool, an integer or a floating-point number; throws std::logic_error else.
 std::string scalar_name(BaseType base);
 
 /// The scalar's name for a length of 1.

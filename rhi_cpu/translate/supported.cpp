@@ -26,6 +26,7 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityInt16,
                                             spv::CapabilityInt8,
                                             spv::CapabilityFloat64,
+                                            spv::CapabilityFloat16,
                                             spv::CapabilityStorageBuffer16BitAccess,
                                             spv::CapabilityUniformAndStorageBuffer16BitAccess,
                                             spv::CapabilityStoragePushConstant16,
@@ -53,6 +54,18 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityVulkanMemoryModelDeviceScope,
                                             spv::CapabilityAtomicFloat32AddEXT,
                                             spv::CapabilityAtomicFloat64AddEXT,
+                                            spv::CapabilityAtomicFloat16AddEXT,
+                                            spv::CapabilityAtomicFloat16MinMaxEXT,
+                                            spv::CapabilityAtomicFloat32MinMaxEXT,
+                                            spv::CapabilityAtomicFloat64MinMaxEXT,
+                                            spv::CapabilityVariablePointers,
+                                            spv::CapabilityVariablePointersStorageBuffer,
+                                            spv::CapabilityDotProduct,
+                                            spv::CapabilityDotProductInputAll,
+                                            spv::CapabilityDotProductInput4x8Bit,
+                                            spv::CapabilityDotProductInput4x8BitPacked,
+                                            spv::CapabilityShaderClockKHR,
+                                            spv::CapabilityExpectAssumeKHR,
                                             spv::CapabilityRayQueryKHR,
                                             spv::CapabilityRayTracingKHR,
                                             spv::CapabilityRayCullMaskKHR,
@@ -106,15 +119,17 @@ constexpr spv::Decoration decorations[] = {
     spv::DecorationNonReadable,      spv::DecorationBinding,       spv::DecorationDescriptorSet,
     spv::DecorationOffset,           spv::DecorationNoContraction, spv::DecorationNoSignedWrap,
     spv::DecorationNoUnsignedWrap,   spv::DecorationNonUniform,    spv::DecorationAliasedPointer,
-    spv::DecorationRestrictPointer,  spv::DecorationUniform};
+    spv::DecorationRestrictPointer,  spv::DecorationUniform,       spv::DecorationFPRoundingMode,
+    spv::DecorationUniformId,        spv::DecorationUserSemantic,  spv::DecorationUserTypeGOOGLE,
+    spv::DecorationCounterBuffer};
 
 /// Those that SPIRV-Cross makes declarations and control flow of; of every other one, Printer makes C++.
 constexpr spv::Op structural_instructions[] = {
     spv::OpSourceContinued, spv::OpSource, spv::OpSourceExtension, spv::OpName, spv::OpMemberName, spv::OpString,
     spv::OpModuleProcessed, spv::OpExtension, spv::OpExtInstImport, spv::OpMemoryModel, spv::OpEntryPoint,
-    spv::OpExecutionMode, spv::OpExecutionModeId, spv::OpCapability, spv::OpDecorate, spv::OpMemberDecorate,
-    spv::OpDecorateString, spv::OpMemberDecorateString, spv::OpDecorationGroup, spv::OpGroupDecorate,
-    spv::OpGroupMemberDecorate,
+    spv::OpExecutionMode, spv::OpExecutionModeId, spv::OpCapability, spv::OpDecorate, spv::OpDecorateId,
+    spv::OpMemberDecorate, spv::OpDecorateString, spv::OpMemberDecorateString, spv::OpDecorationGroup,
+    spv::OpGroupDecorate, spv::OpGroupMemberDecorate,
     // types and constants
     spv::OpTypeVoid, spv::OpTypeBool, spv::OpTypeInt, spv::OpTypeFloat, spv::OpTypeVector, spv::OpTypeMatrix,
     spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypeForwardPointer, spv::OpTypePointer,
@@ -170,9 +185,10 @@ class Checker {
         if (!contains(storage_classes, word(2))) fail("storage class " + storage_class_name(word(2)));
         break;
       case spv::OpTypeFloat:
-        if (word(2) != 32 && word(2) != 64) fail(fmt::format("OpTypeFloat {}", word(2)));
+        if (word(2) != 16 && word(2) != 32 && word(2) != 64) fail(fmt::format("OpTypeFloat {}", word(2)));
         break;
       case spv::OpDecorate:
+      case spv::OpDecorateId:
         check_decoration(word(2), word(3));
         break;
       case spv::OpMemberDecorate:
@@ -207,6 +223,8 @@ class Checker {
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) {
     // Of a payload or a hit attribute, which its variable names too.
     if (decoration == spv::DecorationLocation && model_ != spv::ExecutionModelGLCompute) return;
+    if (decoration == spv::DecorationFPRoundingMode && operand != spv::FPRoundingModeRTE)
+      fail("a rounding mode other than to the nearest");
     if (!contains(decorations, decoration)) fail("decoration " + decoration_name(decoration));
     if (decoration == spv::DecorationBuiltIn && !contains(built_ins, operand))
       fail("built-in " + built_in_name(operand));

@@ -7,11 +7,11 @@
 #include "rhi/compute_pipeline.hpp"
 
 /// SPIR-V to C++: one shader, of compute or of a ray tracing stage, becomes one C++20 translation unit that includes
-/// "rhi_cpu/kernel/kernel.hpp" and exports one function that returns its kernel::KernelInfo.
+/// headers of rhi_cpu/kernel/ and exports one function that returns its kernel::KernelInfo.
 namespace tandem::cpu {
 
 /// Raised whenever the same SPIR-V translates to other C++ than before.
-inline constexpr std::uint32_t translator_version = 5;
+inline constexpr std::uint32_t translator_version = 6;
 
 struct TranslateOptions {
   /// Values of specialisation constants, baked in; the others keep their defaults.

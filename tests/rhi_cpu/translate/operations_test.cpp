@@ -100,8 +100,10 @@ OpCapability Float64
 OpCapability Int64
 OpCapability RayQueryKHR
 OpCapability AtomicFloat32AddEXT
+OpCapability AtomicFloat32MinMaxEXT
 OpExtension "SPV_KHR_ray_query"
 OpExtension "SPV_EXT_shader_atomic_float_add"
+OpExtension "SPV_EXT_shader_atomic_float_min_max"
 OpMemoryModel Logical GLSL450
 OpEntryPoint GLCompute %main "main" %buffer %scene_place
 OpExecutionMode %main LocalSize 1 1 1

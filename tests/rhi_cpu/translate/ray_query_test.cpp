@@ -2,11 +2,13 @@
 // does with its hits is tested with kernel/ray_query.hpp itself.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "rhi_cpu/kernel/trace.hpp"
+#include "tests/rhi_cpu/translate/assembly.hpp"
 #include "tests/rhi_cpu/translate/kernel_harness.hpp"
 
 namespace {
@@ -152,6 +154,91 @@ TEST_CASE("candidates are asked for, confirmed and generated, with structures fr
   CHECK(std::vector<float>(result.begin(), result.begin() + 3) == std::vector<float>{1, 2, -1});
   // The second box is generated at 1.5 instead of 3.5, and what is behind is met no more.
   CHECK(std::vector<float>(result.begin() + 16, result.begin() + 23) == std::vector<float>{1, 1, 11, 0, 2, 1.5f, -1});
+}
+
+TEST_CASE("a structure is made of an address in a loop and used behind it") {
+  const std::string text = R"(
+OpCapability Shader
+OpCapability RayQueryKHR
+OpExtension "SPV_KHR_ray_query"
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %buffer %query
+OpExecutionMode %main LocalSize 1 1 1
+OpDecorate %block Block
+OpMemberDecorate %block 0 Offset 0
+OpMemberDecorate %block 1 Offset 8
+OpMemberDecorate %block 2 Offset 12
+OpDecorate %buffer DescriptorSet 0
+OpDecorate %buffer Binding 0
+%void = OpTypeVoid
+%signature = OpTypeFunction %void
+%bool = OpTypeBool
+%uint = OpTypeInt 32 0
+%float = OpTypeFloat 32
+%uvec2 = OpTypeVector %uint 2
+%vec3 = OpTypeVector %float 3
+%scene_type = OpTypeAccelerationStructureKHR
+%query_type = OpTypeRayQueryKHR
+%query_pointer = OpTypePointer Private %query_type
+%block = OpTypeStruct %uvec2 %uint %float
+%pointer = OpTypePointer StorageBuffer %block
+%address_pointer = OpTypePointer StorageBuffer %uvec2
+%uint_pointer = OpTypePointer StorageBuffer %uint
+%float_pointer = OpTypePointer StorageBuffer %float
+%zero = OpConstant %uint 0
+%one = OpConstant %uint 1
+%two = OpConstant %uint 2
+%mask = OpConstant %uint 127
+%f0 = OpConstant %float 0
+%f1 = OpConstant %float 1
+%f3 = OpConstant %float 3
+%f100 = OpConstant %float 100
+%origin = OpConstantComposite %vec3 %f3 %f0 %f0
+%direction = OpConstantComposite %vec3 %f0 %f0 %f1
+%buffer = OpVariable %pointer StorageBuffer
+%query = OpVariable %query_pointer Private
+%main = OpFunction %void None %signature
+%entry = OpLabel
+OpBranch %header
+%header = OpLabel
+%i = OpPhi %uint %zero %entry %next %continue
+OpLoopMerge %done %continue None
+OpBranch %inside
+%inside = OpLabel
+%place = OpAccessChain %address_pointer %buffer %zero
+%words = OpLoad %uvec2 %place
+%scene = OpConvertUToAccelerationStructureKHR %scene_type %words
+%count_place = OpAccessChain %uint_pointer %buffer %one
+%count = OpLoad %uint %count_place
+%enough = OpUGreaterThanEqual %bool %i %count
+OpBranchConditional %enough %done %continue
+%continue = OpLabel
+%next = OpIAdd %uint %i %one
+OpBranch %header
+%done = OpLabel
+OpRayQueryInitializeKHR %query %scene %one %mask %origin %f0 %direction %f100
+%proceeds = OpRayQueryProceedKHR %bool %query
+%t = OpRayQueryGetIntersectionTKHR %float %query %one
+%result = OpAccessChain %float_pointer %buffer %two
+OpStore %result %t
+OpReturn
+OpFunctionEnd
+)";
+  const kernel::TopLevel scene = {&functions, instances, 2, true, false};
+  const kernel::AddressedTopLevel addressed = {&scene};
+  struct {
+    const kernel::AddressedTopLevel* address;
+    std::uint32_t count;
+    float result;
+  } memory = {&addressed, 2, 0};
+  for (const bool optimize : {false, true}) {
+    CAPTURE(optimize);
+    memory.result = 0;
+    tandem::test::KernelOptions options;
+    options.optimize = optimize;
+    Kernel(tandem::test::assembled(text), options).run({{reinterpret_cast<std::byte*>(&memory), sizeof(memory)}});
+    CHECK(memory.result == 6);
+  }
 }
 
 }  // namespace

@@ -71,11 +71,6 @@ TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
       "#extension GL_KHR_shader_subgroup_basic : require\nlayout(binding = 1) buffer B { uint b; };\n"
       "void main() { b = gl_SubgroupSize; }",
       "capability GroupNonUniform is not supported");
-  check_glsl(
-      "#extension GL_EXT_shader_explicit_arithmetic_types_float16 : require\nlayout(binding = 1) buffer B { float b; "
-      "};\n"
-      "void main() { b = float(float16_t(b) * float16_t(2)); }",
-      "capability Float16 is not supported");
 }
 
 TEST_CASE("capabilities, models, modes, storage classes, decorations and built-ins are named") {
