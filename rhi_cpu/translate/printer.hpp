@@ -182,6 +182,8 @@ class Printer : public spirv_cross::CompilerGLSL {
 
   // printer_images.cpp: storage images, and descriptors as values.
   std::string texel_format(const Type& type) const;
+  /// The kernel::Shape of an image type.
+  const char* image_shape(const Type& type) const;
   /// Types whose variables hold a pointer to what the host has bound.
   bool is_descriptor(const Type& type) const;
   const char* descriptor_target(const Type& type) const;

@@ -16,6 +16,24 @@ std::string Printer::texel_format(const Type& type) const {
   return fmt::format("k::TexelFormat::{}", name);
 }
 
+const char* Printer::image_shape(const Type& type) const {
+  const bool arrayed = type.image.arrayed;
+  switch (type.image.dim) {
+    case spv::Dim1D:
+      return arrayed ? "k::Shape::d1_array" : "k::Shape::d1";
+    case spv::DimBuffer:
+      return "k::Shape::d1";
+    case spv::Dim2D:
+      return arrayed ? "k::Shape::d2_array" : "k::Shape::d2";
+    case spv::Dim3D:
+      return "k::Shape::d3";
+    case spv::DimCube:
+      return arrayed ? "k::Shape::cube_array" : "k::Shape::cube";
+    default:
+      fail("an image of dimension " + dimension_name(type.image.dim));
+  }
+}
+
 bool Printer::is_descriptor(const Type& type) const {
   return type.basetype == SPIRType::AccelerationStructure || type.basetype == SPIRType::Image;
 }
@@ -66,18 +84,21 @@ void Printer::print_image_write(const Instruction& i) {
 
 void Printer::print_image_size(const Instruction& i) {
   const bool is_scalar = get<Type>(i.result_type()).vecsize == 1;
-  define(i, fmt::format("{}(k::image_size({}){})", type_name(i.result_type()), value(i.operand(0)),
-                        is_scalar ? ".x" : ""));
+  // OpImageQuerySizeLod has a level.
+  const std::string level = i.operand_count() > 1 ? fmt::format(", k::uint({})", value(i.operand(1))) : "";
+  define(i, fmt::format("{}(k::image_size<{}>({}{}){})", type_name(i.result_type()), image_shape(type_of(i.operand(0))),
+                        value(i.operand(0)), level, is_scalar ? ".x" : ""));
 }
 
 void Printer::print_texel_pointer(const Instruction& i) {
   const Type& image = get<Type>(pointee(expression_type_id(i.operand(0))));
-  if (image.image.format != spv::ImageFormatR32ui && image.image.format != spv::ImageFormatR32i &&
-      image.image.format != spv::ImageFormatR32f)
-    fail("OpImageTexelPointer into other than r32ui, r32i and r32f images");
+  const spv::ImageFormat format = image.image.format;
+  const bool is_wide = format == spv::ImageFormatR64ui || format == spv::ImageFormatR64i;
+  if (!is_wide && format != spv::ImageFormatR32ui && format != spv::ImageFormatR32i && format != spv::ImageFormatR32f)
+    fail("OpImageTexelPointer into an image of format " + image_format_name(format));
   // It lives until the end of the expression that has the atomic operation.
-  const std::string pointer =
-      fmt::format("k::texel_pointer({}, {}, k::NoTexel{{}})", descriptor_value(i.operand(0)), value(i.operand(1)));
+  const std::string pointer = fmt::format("k::texel_pointer({}, {}, {}, k::NoTexel{{}})",
+                                          descriptor_value(i.operand(0)), value(i.operand(1)), is_wide ? 8 : 4);
   addresses_[i.result()] = {.bytes = pointer, .resource = ""};
   set<SPIRExpression>(i.result(), pointer, i.result_type(), true);
 }

@@ -36,12 +36,17 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityShaderNonUniform,
                                             spv::CapabilityPhysicalStorageBufferAddresses,
                                             spv::CapabilityImage1D,
+                                            spv::CapabilityImageCubeArray,
+                                            spv::CapabilityImageBuffer,
+                                            spv::CapabilityInt64ImageEXT,
                                             spv::CapabilityImageQuery,
                                             spv::CapabilityStorageImageExtendedFormats,
                                             spv::CapabilityStorageImageReadWithoutFormat,
                                             spv::CapabilityStorageImageWriteWithoutFormat,
                                             spv::CapabilityStorageImageArrayDynamicIndexing,
                                             spv::CapabilityStorageImageArrayNonUniformIndexing,
+                                            spv::CapabilityStorageTexelBufferArrayDynamicIndexing,
+                                            spv::CapabilityStorageTexelBufferArrayNonUniformIndexing,
                                             spv::CapabilityUniformBufferArrayNonUniformIndexing,
                                             spv::CapabilityStorageBufferArrayNonUniformIndexing,
                                             spv::CapabilitySignedZeroInfNanPreserve,
@@ -93,6 +98,8 @@ constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,       spv::Buil
                                       spv::BuiltInHitKindKHR,          spv::BuiltInObjectToWorldKHR,
                                       spv::BuiltInWorldToObjectKHR,    spv::BuiltInIncomingRayFlagsKHR,
                                       spv::BuiltInCullMaskKHR};
+
+constexpr spv::Dim dimensions[] = {spv::Dim1D, spv::Dim2D, spv::Dim3D, spv::DimCube, spv::DimBuffer};
 
 /// Those that mean something here, and those that promise or allow what a CPU does anyway.
 constexpr spv::Decoration decorations[] = {
@@ -161,7 +168,7 @@ class Checker {
         if (!contains(execution_modes, word(2))) fail("execution mode " + execution_mode_name(word(2)));
         break;
       case spv::OpTypeImage:
-        check_image(word(3), word(5), word(6), word(7));
+        check_image(word(3), word(6), word(7));
         break;
       case spv::OpTypePointer:
         if (!contains(storage_classes, word(2))) fail("storage class " + storage_class_name(word(2)));
@@ -191,13 +198,10 @@ class Checker {
     sets_[id] = name;
   }
 
-  void check_image(std::uint32_t dimension, std::uint32_t arrayed, std::uint32_t multisampled,
-                   std::uint32_t sampled) const {
+  void check_image(std::uint32_t dimension, std::uint32_t multisampled, std::uint32_t sampled) const {
     if (sampled != 2) fail("OpTypeImage of an image that is sampled");
     if (multisampled != 0) fail("OpTypeImage with several samples");
-    const bool known =
-        dimension == spv::Dim2D || (arrayed == 0 && (dimension == spv::Dim1D || dimension == spv::Dim3D));
-    if (!known) fail("OpTypeImage of dimension " + dimension_name(dimension) + (arrayed != 0 ? ", arrayed," : ""));
+    if (!contains(dimensions, dimension)) fail("OpTypeImage of dimension " + dimension_name(dimension));
   }
 
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) const {

@@ -56,10 +56,6 @@ TEST_CASE("the empty module is supported") { tandem::cpu::translate(assemble(mod
 TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
   check_glsl("layout(binding = 0, rgba8) uniform image2DMS i; void main() { imageStore(i, ivec2(0), 0, vec4(0)); }",
              "capability StorageImageMultisample is not supported");
-  check_glsl("layout(binding = 0, rgba8) uniform imageCube i; void main() { imageStore(i, ivec3(0), vec4(0)); }",
-             "OpTypeImage of dimension Cube is not supported");
-  check_glsl("layout(binding = 0, rgba8) uniform image1DArray i; void main() { imageStore(i, ivec2(0), vec4(0)); }",
-             "OpTypeImage of dimension 1D, arrayed, is not supported");
   check_glsl(
       "layout(binding = 0) uniform sampler2D s; layout(binding = 1) buffer B { vec4 b; };\n"
       "void main() { b = textureLod(s, vec2(0), 0.0); }",
