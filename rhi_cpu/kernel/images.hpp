@@ -60,13 +60,18 @@ inline void image_store(const Image* image, const Coordinate& coordinate, const 
     encode<C, format>(texel, value);
 }
 
-/// imageSize and textureSize: the sides of a level, then the layers; of an array of cubes, the cubes. 0 for a level
-/// that the image does not have.
-template <Shape shape>
-inline uvec3 image_size(const Image* image, std::uint32_t level = 0) {
+/// Sides and layers of a level; 0 for a level that the image does not have.
+inline uvec3 level_size(const Image* image, std::uint32_t level) {
   if (level >= image->level_count) return uvec3(0u);
   uvec3 size(image->size[0], image->size[1], image->size[2]);
   for (int i = 0; i < static_cast<int>(image->sides); ++i) size[i] = kernel::max(size[i] >> level, 1u);
+  return size;
+}
+
+/// imageSize and textureSize: the same, where an array of cubes has cubes.
+template <Shape shape>
+inline uvec3 image_size(const Image* image, std::uint32_t level = 0) {
+  uvec3 size = level_size(image, level);
   if constexpr (shape == Shape::cube_array) size.z /= 6u;
   return size;
 }

@@ -208,6 +208,7 @@ void Printer::print_module() {
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
+  if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
   statement("");
   statement("namespace {");
   statement("");

@@ -35,11 +35,14 @@ const char* Printer::image_shape(const Type& type) const {
 }
 
 bool Printer::is_descriptor(const Type& type) const {
-  return type.basetype == SPIRType::AccelerationStructure || type.basetype == SPIRType::Image;
+  return type.basetype == SPIRType::AccelerationStructure || type.basetype == SPIRType::Image ||
+         type.basetype == SPIRType::Sampler || type.basetype == SPIRType::SampledImage;
 }
 
 const char* Printer::descriptor_target(const Type& type) const {
-  return type.basetype == SPIRType::Image ? "k::Image" : "k::TopLevel";
+  if (is_combined(type)) return "k::SampledImage";
+  if (type.basetype == SPIRType::Sampler) return "k::Sampler";
+  return type.basetype == SPIRType::AccelerationStructure ? "k::TopLevel" : "k::Image";
 }
 
 std::string Printer::descriptor_member(const Type& type, const std::string& resource) const {
@@ -48,10 +51,13 @@ std::string Printer::descriptor_member(const Type& type, const std::string& reso
 
 std::string Printer::descriptor_value(std::uint32_t pointer_id) {
   const Type& type = type_of(pointer_id);
-  // An element of an array of descriptors is a kernel::Resource; a variable or a parameter is what it holds.
-  const bool is_element = maybe_get<SPIRVariable>(pointer_id) == nullptr;
-  const std::string text = is_element ? descriptor_member(type, value(pointer_id)) : value(pointer_id);
-  return type.basetype == SPIRType::Image ? text : "k::accelerationStructureEXT{" + text + "}";
+  // An element of an array of descriptors is a kernel::Resource; a variable points at what the host has bound; a
+  // parameter is a value.
+  const auto* variable = maybe_get<SPIRVariable>(pointer_id);
+  if (variable != nullptr && variable->parameter != nullptr) return value(pointer_id);
+  const std::string text = variable == nullptr ? descriptor_member(type, value(pointer_id)) : value(pointer_id);
+  if (type.basetype == SPIRType::AccelerationStructure) return "k::accelerationStructureEXT{" + text + "}";
+  return is_combined(type) ? "*" + text : text;
 }
 
 void Printer::refuse_sample(const Instruction& i, std::size_t mask) const {
@@ -65,9 +71,8 @@ void Printer::print_image_read(const Instruction& i) {
   refuse_sample(i, 2);
   const Type& image = type_of(i.operand(0));
   const Type& result = get<Type>(i.result_type());
-  const std::string texel =
-      fmt::format("k::image_load<{}, {}>({}, {})", scalar_name(get<Type>(image.image.type).basetype),
-                  texel_format(image), value(i.operand(0)), value(i.operand(1)));
+  const std::string texel = fmt::format("k::image_load<{}, {}>({}, {})", texel_component(image), texel_format(image),
+                                        value(i.operand(0)), value(i.operand(1)));
   define(i, result.vecsize == 1 ? texel + ".x" : fmt::format("{}({})", type_name(result), texel));
 }
 

@@ -37,6 +37,15 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityPhysicalStorageBufferAddresses,
                                             spv::CapabilityImage1D,
                                             spv::CapabilityImageCubeArray,
+                                            spv::CapabilitySampled1D,
+                                            spv::CapabilitySampledCubeArray,
+                                            spv::CapabilitySampledBuffer,
+                                            spv::CapabilityImageGatherExtended,
+                                            spv::CapabilityMinLod,
+                                            spv::CapabilitySampledImageArrayDynamicIndexing,
+                                            spv::CapabilitySampledImageArrayNonUniformIndexing,
+                                            spv::CapabilityUniformTexelBufferArrayDynamicIndexing,
+                                            spv::CapabilityUniformTexelBufferArrayNonUniformIndexing,
                                             spv::CapabilityImageBuffer,
                                             spv::CapabilityInt64ImageEXT,
                                             spv::CapabilityImageQuery,
@@ -123,10 +132,10 @@ constexpr spv::Op structural_instructions[] = {
     // types and constants
     spv::OpTypeVoid, spv::OpTypeBool, spv::OpTypeInt, spv::OpTypeFloat, spv::OpTypeVector, spv::OpTypeMatrix,
     spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypeForwardPointer, spv::OpTypePointer,
-    spv::OpTypeFunction, spv::OpTypeImage, spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef,
-    spv::OpConstantTrue, spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull,
-    spv::OpSpecConstantTrue, spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite,
-    spv::OpSpecConstantOp,
+    spv::OpTypeFunction, spv::OpTypeImage, spv::OpTypeSampler, spv::OpTypeSampledImage,
+    spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef, spv::OpConstantTrue,
+    spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull, spv::OpSpecConstantTrue,
+    spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite, spv::OpSpecConstantOp,
     // variables and control flow
     spv::OpVariable, spv::OpFunction, spv::OpFunctionParameter, spv::OpFunctionEnd, spv::OpPhi, spv::OpLoopMerge,
     spv::OpSelectionMerge, spv::OpLabel, spv::OpBranch, spv::OpBranchConditional, spv::OpSwitch, spv::OpReturn,
@@ -199,7 +208,7 @@ class Checker {
   }
 
   void check_image(std::uint32_t dimension, std::uint32_t multisampled, std::uint32_t sampled) const {
-    if (sampled != 2) fail("OpTypeImage of an image that is sampled");
+    if (sampled != 1 && sampled != 2) fail("OpTypeImage that may be sampled or not");
     if (multisampled != 0) fail("OpTypeImage with several samples");
     if (!contains(dimensions, dimension)) fail("OpTypeImage of dimension " + dimension_name(dimension));
   }
