@@ -93,7 +93,10 @@ void check_format(Context& context, const FormatCase& format_case, TextureFormat
 
 void add_format_cases(const Group& group) {
   const FormatCase kinds[] = {
-      {ComponentKind::unorm, "", "float", {{{0, 1, 0.2, 0.71}, {1, 0.2, 0, 1}, {-3, 7, 0.93, 0.12}, {0.31, 0.6, 1, 0}}}},
+      {ComponentKind::unorm,
+       "",
+       "float",
+       {{{0, 1, 0.2, 0.71}, {1, 0.2, 0, 1}, {-3, 7, 0.93, 0.12}, {0.31, 0.6, 1, 0}}}},
       {ComponentKind::snorm, "", "float", {{{0, 1, -0.2, -1}, {-1, 0.2, 0, 1}, {-3, 7, 0.9, -0.1}, {0.3, -0.6, 1, 0}}}},
       {ComponentKind::floating,
        "",

@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "rhi/texture.hpp"
-#include "rhi_cpu/kernel/images.hpp"
+#include "rhi_cpu/kernel/texels.hpp"
 
 namespace tandem::cpu {
 namespace {

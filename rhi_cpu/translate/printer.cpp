@@ -211,6 +211,7 @@ void Printer::print_module() {
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
   if (has_halves()) statement("#include \"rhi_cpu/kernel/half.hpp\"");
+  if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
   statement("");
   statement("namespace {");
   statement("");

@@ -194,6 +194,8 @@ class Printer : public spirv_cross::CompilerGLSL {
 
   // printer_images.cpp: storage images, and descriptors as values.
   std::string texel_format(const Type& type) const;
+  /// The kernel::Shape of an image type.
+  const char* image_shape(const Type& type) const;
   /// Types whose variables hold a pointer to what the host has bound.
   bool is_descriptor(const Type& type) const;
   const char* descriptor_target(const Type& type) const;
@@ -206,6 +208,31 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_image_write(const Instruction& i);
   void print_image_size(const Instruction& i);
   void print_texel_pointer(const Instruction& i);
+
+  // printer_sampling.cpp: sampled images and samplers.
+  /// Ids of image operands, 0 for those that an instruction does not have.
+  struct ImageOperands {
+    std::uint32_t detail = 0;  ///< Lod
+    std::uint32_t dx = 0, dy = 0;
+    std::uint32_t offset = 0;
+    std::uint32_t offsets = 0;  ///< four of them
+    std::uint32_t least_detail = 0;
+  };
+  /// Those behind the mask, which is operand `mask`; refuses what has no meaning here.
+  ImageOperands image_operands(const Instruction& i, std::size_t mask) const;
+  /// The kernel::Lookup of an instruction that samples.
+  std::string lookup(const Instruction& i, std::size_t mask);
+  /// What a shader reads of a texel's components.
+  std::string texel_component(const Type& image) const;
+  /// Whether a type has a sampler in it, which a texel buffer that calls itself a sampler has not.
+  bool is_combined(const Type& type) const;
+  void print_sampled_image(const Instruction& i);
+  void print_image_of(const Instruction& i);
+  void print_sample(const Instruction& i);
+  void print_sample_compare(const Instruction& i);
+  void print_gather(const Instruction& i);
+  void print_fetch(const Instruction& i);
+  void print_level_count(const Instruction& i);
 
   // printer_extended.cpp: GLSL.std.450.
   void print_extended(const Instruction& i);
@@ -243,6 +270,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_set<std::uint32_t> composite_constants_;
   std::unordered_map<std::uint32_t, std::uint64_t> inlined_size_;  ///< instructions of a function with all its callees
   bool has_line_numbers_ = false;
+  bool samples_ = false;                                             ///< needs rhi_cpu/kernel/sampling.hpp
   std::unordered_map<std::uint32_t, std::uint32_t> built_in_types_;  ///< of the variable of a built-in
   std::unordered_set<std::uint32_t> ending_functions_;               ///< a call to one may end the shader
   std::vector<std::pair<std::string, std::string>> payloads_;        ///< type and name of what is passed on

@@ -41,7 +41,9 @@ std::string Printer::type_name(const Type& type) {
     case SPIRType::AccelerationStructure:
       return "k::accelerationStructureEXT";
     case SPIRType::Image:
-      return "const k::Image*";
+    case SPIRType::Sampler:
+    case SPIRType::SampledImage:
+      return is_combined(type) ? "k::SampledImage" : fmt::format("const {}*", descriptor_target(type));
     default:
       break;
   }

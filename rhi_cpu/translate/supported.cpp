@@ -39,12 +39,26 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityRuntimeDescriptorArray,
                                             spv::CapabilityPhysicalStorageBufferAddresses,
                                             spv::CapabilityImage1D,
+                                            spv::CapabilityImageCubeArray,
+                                            spv::CapabilitySampled1D,
+                                            spv::CapabilitySampledCubeArray,
+                                            spv::CapabilitySampledBuffer,
+                                            spv::CapabilityImageGatherExtended,
+                                            spv::CapabilityMinLod,
+                                            spv::CapabilitySampledImageArrayDynamicIndexing,
+                                            spv::CapabilitySampledImageArrayNonUniformIndexing,
+                                            spv::CapabilityUniformTexelBufferArrayDynamicIndexing,
+                                            spv::CapabilityUniformTexelBufferArrayNonUniformIndexing,
+                                            spv::CapabilityImageBuffer,
+                                            spv::CapabilityInt64ImageEXT,
                                             spv::CapabilityImageQuery,
                                             spv::CapabilityStorageImageExtendedFormats,
                                             spv::CapabilityStorageImageReadWithoutFormat,
                                             spv::CapabilityStorageImageWriteWithoutFormat,
                                             spv::CapabilityStorageImageArrayDynamicIndexing,
                                             spv::CapabilityStorageImageArrayNonUniformIndexing,
+                                            spv::CapabilityStorageTexelBufferArrayDynamicIndexing,
+                                            spv::CapabilityStorageTexelBufferArrayNonUniformIndexing,
                                             spv::CapabilityUniformBufferArrayNonUniformIndexing,
                                             spv::CapabilityStorageBufferArrayNonUniformIndexing,
                                             spv::CapabilitySignedZeroInfNanPreserve,
@@ -109,6 +123,8 @@ constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,       spv::Buil
                                       spv::BuiltInWorldToObjectKHR,    spv::BuiltInIncomingRayFlagsKHR,
                                       spv::BuiltInCullMaskKHR};
 
+constexpr spv::Dim dimensions[] = {spv::Dim1D, spv::Dim2D, spv::Dim3D, spv::DimCube, spv::DimBuffer};
+
 /// Those that mean something here, and those that promise or allow what a CPU does anyway.
 constexpr spv::Decoration decorations[] = {
     spv::DecorationRelaxedPrecision, spv::DecorationSpecId,        spv::DecorationBlock,
@@ -133,10 +149,10 @@ constexpr spv::Op structural_instructions[] = {
     // types and constants
     spv::OpTypeVoid, spv::OpTypeBool, spv::OpTypeInt, spv::OpTypeFloat, spv::OpTypeVector, spv::OpTypeMatrix,
     spv::OpTypeArray, spv::OpTypeRuntimeArray, spv::OpTypeStruct, spv::OpTypeForwardPointer, spv::OpTypePointer,
-    spv::OpTypeFunction, spv::OpTypeImage, spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef,
-    spv::OpConstantTrue, spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull,
-    spv::OpSpecConstantTrue, spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite,
-    spv::OpSpecConstantOp,
+    spv::OpTypeFunction, spv::OpTypeImage, spv::OpTypeSampler, spv::OpTypeSampledImage,
+    spv::OpTypeAccelerationStructureKHR, spv::OpTypeRayQueryKHR, spv::OpUndef, spv::OpConstantTrue,
+    spv::OpConstantFalse, spv::OpConstant, spv::OpConstantComposite, spv::OpConstantNull, spv::OpSpecConstantTrue,
+    spv::OpSpecConstantFalse, spv::OpSpecConstant, spv::OpSpecConstantComposite, spv::OpSpecConstantOp,
     // variables and control flow
     spv::OpVariable, spv::OpFunction, spv::OpFunctionParameter, spv::OpFunctionEnd, spv::OpPhi, spv::OpLoopMerge,
     spv::OpSelectionMerge, spv::OpLabel, spv::OpBranch, spv::OpBranchConditional, spv::OpSwitch, spv::OpReturn,
@@ -179,7 +195,7 @@ class Checker {
         if (!contains(execution_modes, word(2))) fail("execution mode " + execution_mode_name(word(2)));
         break;
       case spv::OpTypeImage:
-        check_image(word(3), word(5), word(6), word(7));
+        check_image(word(3), word(6), word(7));
         break;
       case spv::OpTypePointer:
         if (!contains(storage_classes, word(2))) fail("storage class " + storage_class_name(word(2)));
@@ -212,12 +228,10 @@ class Checker {
     sets_[id] = name;
   }
 
-  void check_image(std::uint32_t dimension, std::uint32_t arrayed, std::uint32_t multisampled, std::uint32_t sampled) {
-    if (sampled != 2) fail("OpTypeImage of an image that is sampled");
+  void check_image(std::uint32_t dimension, std::uint32_t multisampled, std::uint32_t sampled) {
+    if (sampled != 1 && sampled != 2) fail("OpTypeImage that may be sampled or not");
     if (multisampled != 0) fail("OpTypeImage with several samples");
-    const bool known =
-        dimension == spv::Dim2D || (arrayed == 0 && (dimension == spv::Dim1D || dimension == spv::Dim3D));
-    if (!known) fail("OpTypeImage of dimension " + dimension_name(dimension) + (arrayed != 0 ? ", arrayed," : ""));
+    if (!contains(dimensions, dimension)) fail("OpTypeImage of dimension " + dimension_name(dimension));
   }
 
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) {

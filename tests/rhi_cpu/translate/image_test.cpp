@@ -1,145 +1,25 @@
-// Storage images: every format and dimension, arrays of them, functions that take them, atomics, and what lies outside.
+// Storage images and storage texel buffers: every dimension, arrays of them, functions that take them, atomics, and
+// what lies outside.
 
-#include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdint>
-#include <iterator>
 #include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
-#include <fmt/format.h>
 
-#include "rhi/texture.hpp"
-#include "rhi_cpu/kernel/abi.hpp"
 #include "tests/rhi_cpu/translate/kernel_harness.hpp"
+#include "tests/rhi_cpu/translate/kernel_images.hpp"
 
 namespace {
 
 using tandem::kernel::Image;
 using tandem::kernel::Resource;
 using tandem::rhi::TextureFormat;
+using tandem::test::image_of;
 using tandem::test::Kernel;
 using tandem::test::resource;
-
-Resource resource_of(const Image& image) {
-  return {const_cast<std::byte*>(reinterpret_cast<const std::byte*>(&image)), 0};
-}
-
-template <typename T>
-Image image_of(std::vector<T>& texels, TextureFormat format, std::array<std::uint32_t, 3> size) {
-  return {reinterpret_cast<std::byte*>(texels.data()), {size[0], size[1], size[2]}, static_cast<std::uint32_t>(format)};
-}
-
-using Words = std::vector<std::uint32_t>;
-
-Words floats(std::initializer_list<float> values) {
-  Words words;
-  for (const float value : values) words.push_back(std::bit_cast<std::uint32_t>(value));
-  return words;
-}
-
-/// A texel of one format: a value in GLSL that it is written from, its words, and the components that are read.
-struct Case {
-  std::string layout;
-  TextureFormat format;
-  std::string kind;  ///< prefix of the image's type
-  std::string value;
-  Words texel;
-  Words components;
-};
-
-// 0.5 * 255 = 127.5 lies in the middle, and goes to the even 128; NaN becomes 0. Integers keep their low bits. What a
-// format lacks is read as 0, alpha as 1.
-const Case cases[] = {
-    {"rgba8",
-     TextureFormat::rgba8_unorm,
-     "",
-     "0.5, 2.0, -1.0, uintBitsToFloat(0x7fc00000)",
-     {0x0000ff80},
-     floats({128 / 255.0f, 1, 0, 0})},
-    {"rgba8_snorm",
-     TextureFormat::rgba8_snorm,
-     "",
-     "-1.0, 1.0, -3.0, 0.5",
-     {0x40817f81},
-     floats({-1, 1, -1, 64 / 127.0f})},
-    {"rgba8ui", TextureFormat::rgba8_uint, "u", "1u, 255u, 257u, 3u", {0x0301ff01}, {1, 255, 1, 3}},
-    {"rgba8i", TextureFormat::rgba8_sint, "i", "-1, 127, -128, 3", {0x03807fff}, {0xffffffff, 127, 0xffffff80, 3}},
-    {"rgba16ui", TextureFormat::rgba16_uint, "u", "1u, 65535u, 2u, 3u", {0xffff0001, 0x00030002}, {1, 65535, 2, 3}},
-    {"rgba16i",
-     TextureFormat::rgba16_sint,
-     "i",
-     "-1, 2, -32768, 3",
-     {0x0002ffff, 0x00038000},
-     {0xffffffff, 2, 0xffff8000, 3}},
-    {"rgba16f",
-     TextureFormat::rgba16_float,
-     "",
-     "1.0, -2.0, 65504.0, 0.5",
-     {0xc0003c00, 0x38007bff},
-     floats({1, -2, 65504, 0.5f})},
-    {"r32ui", TextureFormat::r32_uint, "u", "4000000000u, 1u, 2u, 3u", {4000000000u}, {4000000000u, 0, 0, 1}},
-    {"r32i", TextureFormat::r32_sint, "i", "-5, 1, 2, 3", {0xfffffffb}, {0xfffffffb, 0, 0, 1}},
-    {"r32f", TextureFormat::r32_float, "", "1.5, 1, 2, 3", floats({1.5f}), floats({1.5f, 0, 0, 1})},
-    {"rg32ui", TextureFormat::rg32_uint, "u", "7u, 8u, 2u, 3u", {7, 8}, {7, 8, 0, 1}},
-    {"rg32i", TextureFormat::rg32_sint, "i", "-7, 8, 2, 3", {0xfffffff9, 8}, {0xfffffff9, 8, 0, 1}},
-    {"rg32f", TextureFormat::rg32_float, "", "7, 8, 2, 3", floats({7, 8}), floats({7, 8, 0, 1})},
-    {"rgba32ui", TextureFormat::rgba32_uint, "u", "7u, 8u, 9u, 10u", {7, 8, 9, 10}, {7, 8, 9, 10}},
-    {"rgba32i", TextureFormat::rgba32_sint, "i", "-1, 8, 9, 10", {0xffffffff, 8, 9, 10}, {0xffffffff, 8, 9, 10}},
-    {"rgba32f", TextureFormat::rgba32_float, "", "7, 8, 9, 0.1", floats({7, 8, 9, 0.1f}), floats({7, 8, 9, 0.1f})},
-};
-
-TEST_CASE("texels are written and read in every format, which the shader names or leaves to the image") {
-  for (const bool named : {true, false}) {
-    CAPTURE(named);
-    std::string declarations =
-        "#extension GL_EXT_shader_image_load_formatted : require\nlayout(local_size_x = 1) in;\n"
-        "layout(binding = 0) buffer Result { uvec4 result[]; };\n";
-    std::string statements;
-    int i = 0;
-    for (const Case& each : cases) {
-      ++i;
-      declarations += fmt::format("layout(binding = {}{}) uniform {}image2D image{};\n", i,
-                                  named ? ", " + each.layout : "", each.kind, i);
-      statements += fmt::format(
-          "imageStore(image{0}, ivec2(1, 0), {1}vec4({2}));\n"
-          "result[{3}] = {4}(imageLoad(image{0}, ivec2(0, 1)));\n",
-          i, each.kind, each.value, i - 1, each.kind.empty() ? "floatBitsToUint" : "uvec4");
-    }
-    const Kernel kernel(declarations + "void main() {\n" + statements + "}");
-    constexpr std::size_t count = std::size(cases);
-    std::vector<Words> texels(count);
-    std::vector<Image> images(count);
-    Words result(4 * count);
-    std::vector<Resource> resources = {resource(result)};
-    for (std::size_t k = 0; k < count; ++k) {
-      // Three texels in two rows; the one that is read is the first of the second row.
-      const std::size_t words = cases[k].texel.size();
-      REQUIRE(tandem::rhi::size_of(cases[k].format) == 4 * words);
-      texels[k].assign(6 * words, 0xabababab);
-      std::copy(cases[k].texel.begin(), cases[k].texel.end(), texels[k].begin() + std::ptrdiff_t(3 * words));
-      images[k] = image_of(texels[k], cases[k].format, {3, 2, 1});
-      resources.push_back(resource_of(images[k]));
-    }
-    kernel.run(resources);
-    for (std::size_t k = 0; k < count; ++k) {
-      CAPTURE(cases[k].layout);
-      const Words& texel = cases[k].texel;
-      Words memory;
-      for (const bool holds : {false, true, false, true, false, false}) {
-        if (holds)
-          memory.insert(memory.end(), texel.begin(), texel.end());
-        else
-          memory.insert(memory.end(), texel.size(), 0xabababab);
-      }
-      CHECK(texels[k] == memory);
-      CHECK(Words(result.begin() + std::ptrdiff_t(4 * k), result.begin() + std::ptrdiff_t(4 * k + 4)) ==
-            cases[k].components);
-    }
-  }
-}
+using tandem::test::resource_of;
 
 TEST_CASE("images of every dimension, in arrays, through functions, have a size and nothing outside") {
   const std::string source = R"(
@@ -225,6 +105,89 @@ TEST_CASE("atomic operations on texels") {
   std::vector<std::uint32_t> expected(64, 0);
   expected.push_back(4);
   CHECK(result == expected);
+}
+
+TEST_CASE("cubes, arrays of cubes and of lines, and texel buffers") {
+  // The layer of a cube is its face; of an array of cubes, the face and six times the cube.
+  const Kernel kernel(R"(
+    #extension GL_EXT_shader_image_load_formatted : require
+    layout(local_size_x = 1) in;
+    layout(binding = 0, r32f) uniform imageCube cube;
+    layout(binding = 1, r32f) uniform imageCubeArray cubes;
+    layout(binding = 2, r32f) uniform image1DArray lines;
+    layout(binding = 3) uniform imageBuffer texels[2];
+    layout(binding = 4) buffer Result { float result[]; };
+    float at(imageBuffer b, int i) { return imageLoad(b, i).x; }
+    void main() {
+      result[0] = imageLoad(cube, ivec3(1, 0, 5)).x;
+      result[1] = imageLoad(cubes, ivec3(0, 1, 7)).x;
+      result[2] = imageLoad(lines, ivec2(2, 1)).x;
+      result[3] = at(texels[result.length() - 17], 3);
+      result[4] = imageLoad(cube, ivec3(1, 0, 6)).x + imageLoad(cubes, ivec3(0, 0, 12)).x +
+                  imageLoad(lines, ivec2(0, 2)).x + imageLoad(texels[1], 4).x + imageLoad(texels[0], -1).x;
+      ivec3 s = imageSize(cubes);
+      result[5] = float(imageSize(cube).x * 10 + imageSize(cube).y);
+      result[6] = float(s.x * 100 + s.y * 10 + s.z);
+      result[7] = float(imageSize(lines).x * 10 + imageSize(lines).y);
+      result[8] = float(imageSize(texels[1]));
+      imageStore(cube, ivec3(0, 1, 4), vec4(-1)); imageStore(cubes, ivec3(1, 1, 11), vec4(-2));
+      imageStore(lines, ivec2(0, 1), vec4(-3)); imageStore(texels[1], 0, vec4(-4));
+      imageStore(lines, ivec2(3, 0), vec4(-5)); imageStore(texels[1], 4, vec4(-6));
+    })");
+  const auto numbered = [](std::size_t count) {
+    std::vector<float> values(count);
+    for (std::size_t i = 0; i < count; ++i) values[i] = static_cast<float>(i);
+    return values;
+  };
+  std::vector<float> cube = numbered(24), cubes = numbered(48), lines = numbered(6), one = numbered(1),
+                     four = numbered(5), result(18);
+  const auto image = [](std::vector<float>& values, std::array<std::uint32_t, 3> size) {
+    return image_of(values, TextureFormat::r32_float, size);
+  };
+  const Image images[] = {image(cube, {2, 2, 6}), image(cubes, {2, 2, 12}), image(lines, {3, 2, 1}),
+                          image(one, {1, 1, 1}), image(four, {4, 1, 1})};
+  kernel.run({resource_of(images[0]), resource_of(images[1]), resource_of(images[2]), resource_of(images[3]),
+              resource_of(images[4]), resource(result)});
+  result.resize(9);
+  CHECK(result == std::vector<float>{21, 30, 5, 3, 0, 22, 222, 32, 4});
+  CHECK(cube[18] == -1);
+  CHECK(cubes[47] == -2);
+  CHECK(lines == std::vector<float>{0, 1, 2, -3, 4, 5});
+  CHECK(four == std::vector<float>{-4, 1, 2, 3, 4});
+}
+
+TEST_CASE("atomic operations on texels of 64 bits, on floats, and in texel buffers, cubes and layers") {
+  const Kernel kernel(R"(
+    #extension GL_EXT_shader_image_int64 : require
+    #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+    #extension GL_EXT_shader_atomic_float : require
+    layout(local_size_x = 8) in;
+    layout(binding = 0, r64ui) uniform u64image2DArray wide;
+    layout(binding = 1, r64i) uniform i64imageBuffer line;
+    layout(binding = 2, r32f) uniform imageCube cube;
+    layout(binding = 3, r32ui) uniform uimageBuffer counts;
+    void main() {
+      int i = int(gl_LocalInvocationIndex);
+      imageAtomicAdd(wide, ivec3(1, 0, 1), 0x100000000ul);
+      imageAtomicMin(line, 1, int64_t(-i) << 40);
+      imageAtomicAdd(cube, ivec3(0, 0, 3), 0.5);
+      if (i == 7) imageAtomicExchange(cube, ivec3(0, 0, 4), 2.25);
+      imageAtomicOr(counts, i & 1, 1u << i);
+      imageAtomicAdd(counts, 2, 1u);
+      imageAtomicMax(wide, ivec3(0, 0, 2), 9ul);
+    })");
+  std::vector<std::uint64_t> wide(4, 5);
+  std::vector<std::int64_t> line(2, 3);
+  std::vector<float> cube(6, 1);
+  std::vector<std::uint32_t> counts(3, 0);
+  const Image images[] = {
+      image_of(wide, TextureFormat::r64_uint, {2, 1, 2}), image_of(line, TextureFormat::r64_sint, {2, 1, 1}),
+      image_of(cube, TextureFormat::r32_float, {1, 1, 6}), image_of(counts, TextureFormat::r32_uint, {2, 1, 1})};
+  kernel.run({resource_of(images[0]), resource_of(images[1]), resource_of(images[2]), resource_of(images[3])});
+  CHECK(wide == std::vector<std::uint64_t>{5, 5, 5, 0x800000005u});
+  CHECK(line == std::vector<std::int64_t>{3, -(std::int64_t{7} << 40)});
+  CHECK(cube == std::vector<float>{1, 1, 1, 5, 2.25f, 1});
+  CHECK(counts == std::vector<std::uint32_t>{0x55, 0xaa, 0});
 }
 
 }  // namespace
