@@ -263,6 +263,7 @@ void main() {
     const rhi::BufferHandle bytes =
         rhi::create_filled(device, Words{0, 0x00010003, 0x00050009}, rhi::BufferUsage::uniform_texels, "texels");
     ShaderRun run = {.label = "uniform texel buffer", .glsl = R"(
+#extension GL_EXT_samplerless_texture_functions : require
 layout(local_size_x = 1) in;
 layout(binding = 0) buffer Answers { uint answers[5]; };
 layout(binding = 1) uniform utextureBuffer texels;
