@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "rhi_cpu/kernel/atomics.hpp"
+#include "rhi_cpu/kernel/components.hpp"
 #include "rhi_cpu/kernel/half_conversion.hpp"
 #include "rhi_cpu/kernel/types.hpp"
 
@@ -70,6 +71,19 @@ struct MachineWord<half> {
 
 /// What the functions of kernel/math.hpp compute with before they round.
 constexpr float widened(half x) { return static_cast<float>(x); }
+
+/// The half next to each component, a double or a float, on the side of zero.
+template <typename To, typename From>
+constexpr To convert_toward_zero(const From& from) {
+  return each(
+      [](auto x) {
+        const auto nearest = static_cast<half>(x);
+        const auto value = static_cast<double>(x), back = static_cast<double>(nearest);
+        const bool is_beyond = value < 0 ? back < value : back > value;
+        return is_beyond ? half::from_bits(static_cast<std::uint16_t>(nearest.bits() - 1)) : nearest;
+      },
+      from);
+}
 
 using f16vec2 = glm::vec<2, half>;
 using f16vec3 = glm::vec<3, half>;

@@ -187,6 +187,9 @@ void Printer::print_load(const Instruction& i) {
   const Type& type = get<Type>(i.result_type());
   if (is_buffer_pointer(pointer))
     define(i, load_text(i.result_type(), address_of(pointer)));
+  else if (type_is_opaque_value(type) && !is_array(type))
+    // SPIRV-Cross hoists none of these; what the text says can be said wherever the value is used.
+    set<SPIRExpression>(i.result(), fmt::format("({})", descriptor_value(pointer)), i.result_type(), true);
   else if (is_descriptor(type) && !is_array(type))
     define(i, descriptor_value(pointer));
   else

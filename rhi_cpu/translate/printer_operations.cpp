@@ -102,7 +102,13 @@ void Printer::print_conversion(const Instruction& i, const Operation& operation)
   const Type& type = get<Type>(i.result_type());
   const BaseType base = with_sign(type.basetype, operation.sign);
   const std::string operand = value_with_sign(i.operand(0), operation.sign);
-  define_as(i, fmt::format("k::{}<{}>({})", operation.text, vector_name(base, type.vecsize), operand), base);
+  // The decoration is only on conversions to halves.
+  const bool truncates = type.basetype == SPIRType::Half && has_decoration(i.result(), spv::DecorationFPRoundingMode) &&
+                         get_decoration(i.result(), spv::DecorationFPRoundingMode) == spv::FPRoundingModeRTZ;
+  define_as(i,
+            fmt::format("k::{}<{}>({})", truncates ? "convert_toward_zero" : operation.text,
+                        vector_name(base, type.vecsize), operand),
+            base);
 }
 
 void Printer::print_double_width(const Instruction& i, const Operation& operation) {

@@ -8,6 +8,7 @@
 namespace tandem::cpu {
 
 using spirv_cross::SPIRBlock;
+using spirv_cross::SPIRConstant;
 using spirv_cross::SPIRExpression;
 using spirv_cross::SPIRFunction;
 using spirv_cross::SPIRType;
@@ -126,9 +127,12 @@ void Printer::print_report_intersection(const Instruction& i) {
 }
 
 void Printer::print_structure_at(const Instruction& i) {
-  // Where SPIRV-Cross hoists the result it declares a variable of the operand's type.
   const std::uint32_t operand = i.operand(0);
   std::string address = value(operand);
+  // Of what no instruction computes SPIRV-Cross knows no type.
+  if (maybe_get<SPIRVariable>(operand) != nullptr || maybe_get<SPIRConstant>(operand) != nullptr)
+    return define(i, fmt::format("k::structure_at({})", address));
+  // Where it hoists the result it declares a variable of the operand's type.
   if (hoisted_temporaries.contains(i.result())) {
     statement(to_name(i.result()), " = ", address, ";");
     address = to_name(i.result());

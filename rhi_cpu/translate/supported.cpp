@@ -237,8 +237,9 @@ class Checker {
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) {
     // Of a payload or a hit attribute, which its variable names too.
     if (decoration == spv::DecorationLocation && model_ != spv::ExecutionModelGLCompute) return;
-    if (decoration == spv::DecorationFPRoundingMode && operand != spv::FPRoundingModeRTE)
-      fail("a rounding mode other than to the nearest");
+    if (decoration == spv::DecorationFPRoundingMode && operand != spv::FPRoundingModeRTE &&
+        operand != spv::FPRoundingModeRTZ)
+      fail("rounding to an infinity");
     if (!contains(decorations, decoration)) fail("decoration " + decoration_name(decoration));
     if (decoration == spv::DecorationBuiltIn && !contains(built_ins, operand))
       fail("built-in " + built_in_name(operand));

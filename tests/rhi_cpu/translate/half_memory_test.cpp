@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/rhi_cpu/translate/assembly.hpp"
 #include "tests/rhi_cpu/translate/half_reference.hpp"
 #include "tests/rhi_cpu/translate/kernel_harness.hpp"
 
@@ -25,7 +26,8 @@ using tandem::test::resource;
 const std::string extensions =
     "#extension GL_EXT_shader_explicit_arithmetic_types : require\n"
     "#extension GL_EXT_shader_16bit_storage : require\n"
-    "#extension GL_EXT_scalar_block_layout : require\n";
+    "#extension GL_EXT_scalar_block_layout : require\n"
+    "#extension GL_EXT_spirv_intrinsics : enable\n";
 
 std::vector<std::uint16_t> halves(std::initializer_list<double> values) {
   std::vector<std::uint16_t> bits;
@@ -158,6 +160,7 @@ TEST_CASE("halves lie in buffers, push constants, structs, arrays and matrices")
                                                .more_options = {}};
   Kernel(extensions + R"(
 layout(local_size_x = 1) in;
+spirv_execution_mode(extensions = ["SPV_KHR_float_controls"], capabilities = [4467], 4462, 16);  // RoundingModeRTE
 layout(constant_id = 3) const float16_t factor = float16_t(7);
 struct Pair { float16_t a; f16vec2 b; };
 layout(std430, binding = 0) readonly buffer In {
@@ -232,6 +235,65 @@ void main() {
       .run({resource(floats), resource(exponents)});
   CHECK(floats == std::vector<float>{-5.25f, -5.0f, -0.25f, -0.65625f, 12.0f, 0.0f, 0.75f, 0.0f});
   CHECK(exponents == std::vector<std::int32_t>{3, 0, 4, 0});
+}
+
+TEST_CASE("a conversion to a half rounds as it is decorated") {
+  const std::string text = R"(
+OpCapability Shader
+OpCapability StorageBuffer16BitAccess
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %floats %halves
+OpExecutionMode %main LocalSize 1 1 1
+OpDecorate %nearest FPRoundingMode RTE
+OpDecorate %truncated FPRoundingMode RTZ
+OpMemberDecorate %float_block 0 Offset 0
+OpDecorate %float_block Block
+OpMemberDecorate %half_block 0 Offset 0
+OpMemberDecorate %half_block 1 Offset 2
+OpDecorate %half_block Block
+OpDecorate %floats DescriptorSet 0
+OpDecorate %floats Binding 0
+OpDecorate %halves DescriptorSet 0
+OpDecorate %halves Binding 1
+%void = OpTypeVoid
+%signature = OpTypeFunction %void
+%uint = OpTypeInt 32 0
+%float = OpTypeFloat 32
+%half = OpTypeFloat 16
+%zero = OpConstant %uint 0
+%one = OpConstant %uint 1
+%float_block = OpTypeStruct %float
+%half_block = OpTypeStruct %half %half
+%float_block_pointer = OpTypePointer StorageBuffer %float_block
+%half_block_pointer = OpTypePointer StorageBuffer %half_block
+%float_pointer = OpTypePointer StorageBuffer %float
+%half_pointer = OpTypePointer StorageBuffer %half
+%floats = OpVariable %float_block_pointer StorageBuffer
+%halves = OpVariable %half_block_pointer StorageBuffer
+%main = OpFunction %void None %signature
+%entry = OpLabel
+%place = OpAccessChain %float_pointer %floats %zero
+%x = OpLoad %float %place
+%nearest = OpFConvert %half %x
+%truncated = OpFConvert %half %x
+%first = OpAccessChain %half_pointer %halves %zero
+%second = OpAccessChain %half_pointer %halves %one
+OpStore %first %nearest
+OpStore %second %truncated
+OpReturn
+OpFunctionEnd
+)";
+  const Kernel shader(tandem::test::assembled(text), {});
+  for (const float x : {1.0009f, -1.0009f, 0.1f, 70000.0f, -70000.0f, 3e-8f, 2.0f, 65519.0f}) {
+    CAPTURE(x);
+    std::vector<float> floats = {x};
+    std::vector<std::uint16_t> results(2);
+    shader.run({resource(floats), resource(results)});
+    const std::uint16_t nearest = nearest_half(x);
+    const bool is_beyond = std::fabs(half_value(nearest)) > std::fabs(static_cast<double>(x));
+    CHECK(results[0] == nearest);
+    CHECK(results[1] == nearest - is_beyond);
+  }
 }
 
 }  // namespace

@@ -88,6 +88,15 @@ TEST_CASE("capabilities, models, modes, storage classes, decorations and built-i
                 "execution mode Invocations is");
   check_refused(assemble(module("", "OpDecorate %one BuiltIn FragCoord\n", "", "")), ErrorCode::unsupported,
                 "built-in FragCoord is");
+  for (const std::string capability : {"StorageInputOutput16", "RoundingModeRTZ", "DenormFlushToZero", "Addresses"})
+    check_refused(assemble(module("OpCapability " + capability + "\n", "", "", "")), ErrorCode::unsupported,
+                  "capability " + capability + " is");
+  check_refused(assemble(module("", "OpDecorate %one FPRoundingMode RTP\n", "", "")), ErrorCode::unsupported,
+                "rounding to an infinity is");
+  // Numbers that no grammar has yet.
+  std::vector<std::uint32_t> words = assemble(module("OpCapability Geometry\n", "", "", ""));
+  words[8] = 6999;
+  check_refused(words, ErrorCode::unsupported, "capability 6999 is");
 }
 
 TEST_CASE("built-ins of other shader stages are named") {
@@ -113,6 +122,11 @@ TEST_CASE("built-ins of other shader stages are named") {
 
 TEST_CASE("instructions and extended instructions are named") {
   check_refused(assemble(module("", "", "", "%d = OpDPdx %float %one\n")), ErrorCode::unsupported, "OpDPdx is");
+  check_refused(assemble(module("", "", "", "OpKill\n%next = OpLabel\n")), ErrorCode::unsupported, "OpKill is");
+  check_refused(assemble(module("", "", "", "OpTerminateInvocation\n%next = OpLabel\n")), ErrorCode::unsupported,
+                "OpTerminateInvocation is");
+  check_refused(assemble(module("", "", "", "OpCopyMemorySized %one %one %one\n")), ErrorCode::unsupported,
+                "OpCopyMemorySized is");
   check_refused(assemble(module("", "", "", "%i = OpExtInst %float %glsl InterpolateAtCentroid %one\n")),
                 ErrorCode::unsupported, "extended instruction InterpolateAtCentroid is");
   check_refused(
