@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -89,9 +90,17 @@ struct DeviceInfo {
 };
 
 struct DeviceDesc {
-  std::string name = "cpu";                 ///< "cpu", "cpu-exact", "vulkan" (the first that qualifies), "vulkan:N"
-  bool driver_validation = false;           ///< Vulkan: the Khronos validation layer, an error when it is not installed
-  MessageCallback on_message = {};          ///< warnings, driver and validation messages
+  std::string name = "cpu";         ///< "cpu", "cpu-exact", "vulkan" (the first that qualifies), "vulkan:N"
+  bool driver_validation = false;   ///< Vulkan: the Khronos validation layer, an error when it is not installed
+  MessageCallback on_message = {};  ///< warnings, driver and validation messages
+  /// What a shader accesses outside of a buffer, an image or an array of descriptors reads as zero and is not written,
+  /// as Vulkan's robustBufferAccess2 and robustImageAccess2 say, where a Vulkan driver has these features. Without it
+  /// such an access may do anything. CPU: of kernels that are compiled at run time, and of a shader's own arrays too,
+  /// an index outside of which is 0; not of buffer references and pointers that are passed on as values.
+  bool robust_access = true;
+  /// CPU: a launch that takes longer is stopped in the next round of a loop, and submit throws Error(timeout); what it
+  /// has written stays. 0: no limit. A Vulkan driver has a limit of its own, or none.
+  std::chrono::milliseconds time_limit{0};
   std::uint32_t thread_count = 0;           ///< CPU: worker threads, 0 for all that the machine has
   std::filesystem::path kernel_cache = {};  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
                                             ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem

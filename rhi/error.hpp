@@ -14,6 +14,7 @@ enum class ErrorCode {
   out_of_memory,       ///< host or device memory
   shader_compilation,  ///< the shader's native code could not be made (no compiler, compiler failed)
   device_lost,         ///< the driver gave up; the device and all it made are unusable
+  timeout,             ///< a launch took longer than DeviceDesc::time_limit and was stopped
   io                   ///< a file that the backend itself needs (its kernel cache) cannot be read or written
 };
 

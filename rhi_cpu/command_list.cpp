@@ -14,6 +14,7 @@
 #include "rhi_cpu/bind_group.hpp"
 #include "rhi_cpu/buffer.hpp"
 #include "rhi_cpu/compute_pipeline.hpp"
+#include "rhi_cpu/launch_watch.hpp"
 #include "rhi_cpu/query_pool.hpp"
 #include "rhi_cpu/ray_launch.hpp"
 #include "rhi_cpu/shader_table.hpp"
@@ -50,15 +51,19 @@ std::shared_ptr<Structure> own_buildable(const rhi::AccelerationStructureHandle&
 using Size = std::array<std::uint32_t, 3>;
 
 void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGroup>> groups,
-         std::span<const std::byte> push_constants, const Size& workgroup_count, const Size& base, Workers& workers) {
+         std::span<const std::byte> push_constants, const Size& workgroup_count, const Size& base,
+         DeviceState& device) {
   const kernel::KernelInfo& kernel = pipeline.kernel();
   const ResourceTable table = resource_table(kernel, groups, pipeline.label());
+  const LaunchWatch watch(device.time_limit, pipeline.label());
   const kernel::Dispatch dispatch{.resources = table.resources.data(),
                                   .push_constants = push_constants.data(),
                                   .workgroup_count = {workgroup_count[0], workgroup_count[1], workgroup_count[2]},
-                                  .base_workgroup = {base[0], base[1], base[2]}};
+                                  .base_workgroup = {base[0], base[1], base[2]},
+                                  .watch = watch.watch()};
   const std::uint64_t count = std::uint64_t{workgroup_count[0]} * workgroup_count[1] * workgroup_count[2];
-  workers.for_each_range(count, [&](std::uint64_t first, std::uint64_t end) { kernel.run(dispatch, first, end); });
+  device.workers.for_each_range(count,
+                                [&](std::uint64_t first, std::uint64_t end) { kernel.run(dispatch, first, end); });
 }
 
 Size read_size(const Buffer& buffer, std::uint64_t offset) {
@@ -187,7 +192,7 @@ void CommandList::dispatch(const rhi::DispatchDesc& desc) {
           device = device_] {
     const Size dispatched =
         indirect == nullptr ? count : indirect_count(*indirect, offset, device->info.limits, pipeline->label());
-    run(*pipeline, groups, push_constants, dispatched, base, device->workers);
+    run(*pipeline, groups, push_constants, dispatched, base, *device);
   });
 }
 
@@ -206,7 +211,7 @@ void CommandList::trace_rays(const rhi::TraceRaysDesc& desc) {
           size = desc.size, indirect, offset = desc.indirect_size.offset, device = device_] {
     const Size launched =
         indirect == nullptr ? size : indirect_size(*indirect, offset, device->info.limits, table->pipeline().label());
-    cpu::trace_rays(*table, first, groups, push_constants, launched, device->workers);
+    cpu::trace_rays(*table, first, groups, push_constants, launched, *device);
   });
 }
 

@@ -202,7 +202,9 @@ DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKer
     : info(device_info(desc.name)),
       workers(desc.thread_count),
       tracer(desc.name == exact_name ? Tracer::Kind::exact : Tracer::Kind::embree, desc.on_message),
-      kernels(std::move(precompiled), desc.kernel_cache, desc.on_message) {}
+      time_limit(desc.time_limit),
+      kernels(std::move(precompiled), {.robust = desc.robust_access, .watched = desc.time_limit.count() > 0},
+              desc.kernel_cache, desc.on_message) {}
 
 std::span<const std::string_view> device_names() {
   static constexpr std::array names = {embree_name, exact_name};

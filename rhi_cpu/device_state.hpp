@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -23,6 +24,7 @@ struct DeviceState {
   rhi::DeviceInfo info;
   Workers workers;
   Tracer tracer;
+  std::chrono::milliseconds time_limit;  ///< of a launch; 0: none
   KernelStore kernels;
   BottomLevelRegistry bottom_levels;
   std::mutex submission;  ///< held while a command list executes

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "rhi_cpu/launch_watch.hpp"
 #include "rhi_cpu/trace_ray.hpp"
 
 namespace tandem::cpu {
@@ -41,7 +42,8 @@ class Tiling {
 }  // namespace
 
 void trace_rays(const ShaderTable& table, const FirstRecords& first, std::span<const std::shared_ptr<BindGroup>> groups,
-                std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& size, Workers& workers) {
+                std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& size,
+                DeviceState& device) {
   const RayTracingPipeline& pipeline = table.pipeline();
   std::vector<ResourceTable> tables;
   std::vector<BoundShader> shaders;
@@ -54,13 +56,15 @@ void trace_rays(const ShaderTable& table, const FirstRecords& first, std::span<c
   const GeneralRecord& record = table.ray_generation()[first.ray_generation];
 
   LaunchFailures failures;
+  const LaunchWatch watch(device.time_limit, pipeline.label());
   const RayLaunch launch{.table = table,
                          .shaders = shaders,
                          .first = first,
                          .max_recursion_depth = pipeline.desc().max_recursion_depth,
-                         .failures = failures};
+                         .failures = failures,
+                         .watch = watch.watch()};
   const Tiling tiling(size);
-  workers.for_each_range(tiling.count(), [&](std::uint64_t begin, std::uint64_t end) {
+  device.workers.for_each_range(tiling.count(), [&](std::uint64_t begin, std::uint64_t end) {
     for (std::uint64_t tile = begin; tile < end; ++tile)
       tiling.for_each_invocation(tile, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
         generate_rays(launch, record, push_constants.data(), {x, y, z}, size);

@@ -7,10 +7,10 @@
 #include <span>
 
 #include "rhi_cpu/bind_group.hpp"
+#include "rhi_cpu/device_state.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/launch_failures.hpp"
 #include "rhi_cpu/shader_table.hpp"
-#include "rhi_cpu/workers.hpp"
 
 namespace tandem::cpu {
 
@@ -36,11 +36,13 @@ struct RayLaunch {
   FirstRecords first;
   std::uint32_t max_recursion_depth = 0;
   LaunchFailures& failures;
+  const kernel::Watch* watch = nullptr;
 };
 
 /// Runs the ray generation shader for every invocation of `size`. Throws Error for a top level that is not built, and
 /// for what LaunchFailures collects.
 void trace_rays(const ShaderTable& table, const FirstRecords& first, std::span<const std::shared_ptr<BindGroup>> groups,
-                std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& size, Workers& workers);
+                std::span<const std::byte> push_constants, const std::array<std::uint32_t, 3>& size,
+                DeviceState& device);
 
 }  // namespace tandem::cpu

@@ -77,6 +77,7 @@ ShaderCall call_from(const ShaderCall& caller) {
   std::copy_n(caller.launch_id, 3, call.launch_id);
   std::copy_n(caller.launch_size, 3, call.launch_size);
   call.depth = caller.depth;
+  call.watch = caller.watch;
   return call;
 }
 
@@ -330,6 +331,7 @@ void generate_rays(const RayLaunch& launch, const GeneralRecord& record, const s
   call.functions = &functions;
   call.host = &invocation;
   call.push_constants = push_constants;
+  call.watch = launch.watch;
   std::copy_n(id.data(), 3, call.launch_id);
   std::copy_n(size.data(), 3, call.launch_size);
   run(launch, record.shader, record.data, call);

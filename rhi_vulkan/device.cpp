@@ -209,7 +209,9 @@ rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   auto instance = std::make_unique<Instance>(desc.driver_validation, desc.on_message);
   PhysicalDevices devices = find_physical_devices(*instance);
   if (index >= devices.qualifying.size()) throw_no_such_device(desc.name, devices);
-  return make_device(std::move(instance), std::move(devices.qualifying[index]));
+  PhysicalDevice& physical = devices.qualifying[index];
+  if (!desc.robust_access) forget_robust_access(physical.features);
+  return make_device(std::move(instance), std::move(physical));
 }
 
 }  // namespace tandem::vulkan

@@ -16,11 +16,12 @@ void take(Features& enabled, const Features& offered, Members... members) {
 
 void take_core(vk::PhysicalDeviceFeatures& enabled, const vk::PhysicalDeviceFeatures& offered) {
   using F = vk::PhysicalDeviceFeatures;
-  take(enabled, offered, &F::shaderInt16, &F::shaderInt64, &F::shaderFloat64, &F::imageCubeArray,
-       &F::shaderImageGatherExtended, &F::shaderResourceMinLod, &F::shaderStorageImageExtendedFormats,
-       &F::shaderStorageImageReadWithoutFormat, &F::shaderStorageImageWriteWithoutFormat,
-       &F::shaderUniformBufferArrayDynamicIndexing, &F::shaderSampledImageArrayDynamicIndexing,
-       &F::shaderStorageBufferArrayDynamicIndexing, &F::shaderStorageImageArrayDynamicIndexing);
+  take(enabled, offered, &F::robustBufferAccess, &F::shaderInt16, &F::shaderInt64, &F::shaderFloat64,
+       &F::imageCubeArray, &F::shaderImageGatherExtended, &F::shaderResourceMinLod,
+       &F::shaderStorageImageExtendedFormats, &F::shaderStorageImageReadWithoutFormat,
+       &F::shaderStorageImageWriteWithoutFormat, &F::shaderUniformBufferArrayDynamicIndexing,
+       &F::shaderSampledImageArrayDynamicIndexing, &F::shaderStorageBufferArrayDynamicIndexing,
+       &F::shaderStorageImageArrayDynamicIndexing);
 }
 
 void take_vulkan11(vk::PhysicalDeviceVulkan11Features& enabled, const vk::PhysicalDeviceVulkan11Features& offered) {
@@ -76,9 +77,7 @@ void take_extensions(EnabledFeatures& enabled, const vk::raii::PhysicalDevice& d
   // Only for captures, and slow.
   enabled.ray_tracing_pipeline.rayTracingPipelineShaderGroupHandleCaptureReplay = VK_FALSE;
   enabled.ray_tracing_pipeline.rayTracingPipelineShaderGroupHandleCaptureReplayMixed = VK_FALSE;
-  // Out of bounds is undefined here unless a device is made for it; an atomic operation on sparse images is never one.
-  enabled.robustness2.robustBufferAccess2 = VK_FALSE;
-  enabled.robustness2.robustImageAccess2 = VK_FALSE;
+  // There are no sparse images here.
   enabled.atomic_float.sparseImageFloat32Atomics = VK_FALSE;
   enabled.atomic_float.sparseImageFloat32AtomicAdd = VK_FALSE;
   enabled.atomic_float2.sparseImageFloat32AtomicMinMax = VK_FALSE;
@@ -97,7 +96,8 @@ std::vector<Use> uses_of(const EnabledFeatures& e) {
       {VK_KHR_RAY_QUERY_EXTENSION_NAME, any(e.ray_query.rayQuery)},
       {VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, any(e.ray_tracing_pipeline.rayTracingPipeline)},
       {VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME, any(e.ray_tracing_maintenance1.rayTracingMaintenance1)},
-      {VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, any(e.robustness2.nullDescriptor)},
+      {VK_EXT_ROBUSTNESS_2_EXTENSION_NAME,
+       any(e.robustness2.nullDescriptor, e.robustness2.robustBufferAccess2, e.robustness2.robustImageAccess2)},
       {VK_KHR_SHADER_CLOCK_EXTENSION_NAME, any(e.shader_clock.shaderSubgroupClock, e.shader_clock.shaderDeviceClock)},
       {VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME,
        any(e.atomic_float.shaderBufferFloat32Atomics, e.atomic_float.shaderBufferFloat32AtomicAdd,
@@ -124,7 +124,15 @@ EnabledFeatures choose_features(const vk::raii::PhysicalDevice& device) {
   enabled.has_vulkan13 = device.getProperties().apiVersion >= VK_API_VERSION_1_3;
   if (enabled.has_vulkan13) take_vulkan13(enabled.vulkan13, queried<vk::PhysicalDeviceVulkan13Features>(device));
   take_extensions(enabled, device);
+  // Vulkan asks for the one with the other.
+  if (!enabled.core.robustBufferAccess) enabled.robustness2.robustBufferAccess2 = VK_FALSE;
   return enabled;
+}
+
+void forget_robust_access(EnabledFeatures& enabled) {
+  enabled.core.robustBufferAccess = VK_FALSE;
+  enabled.robustness2.robustBufferAccess2 = VK_FALSE;
+  enabled.robustness2.robustImageAccess2 = VK_FALSE;
 }
 
 std::vector<const char*> extensions_of(const EnabledFeatures& enabled) {

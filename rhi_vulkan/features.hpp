@@ -27,6 +27,9 @@ struct EnabledFeatures {
 
 EnabledFeatures choose_features(const vk::raii::PhysicalDevice& device);
 
+/// Turns off what makes accesses outside of buffers and images defined.
+void forget_robust_access(EnabledFeatures& enabled);
+
 /// The device extensions that these features come from.
 std::vector<const char*> extensions_of(const EnabledFeatures& enabled);
 

@@ -47,9 +47,10 @@ bool is_made_of(const PrecompiledKernel& kernel, const rhi::ShaderModule& shader
 
 /// Everything that the native code of a shader depends on.
 ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::SpecializationValue> values,
-                   const KernelCompiler& compiler) {
+                   const KernelOptions& options, const KernelCompiler& compiler) {
   ContentHasher hasher;
   hasher.add(std::uint64_t{kernel::abi_version}).add(std::uint64_t{translator_version});
+  hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched});
   for (const KernelHeader& header : kernel_headers()) hasher.add(header.path).add(header.text);
   hasher.add(compiler.path.string()).add(compiler.version);
   hasher.add(kernel_compile_options()).add(processor_identity());
@@ -61,9 +62,10 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
 
 }  // namespace
 
-KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, std::filesystem::path cache_folder,
-                         rhi::MessageCallback on_message)
+KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, const KernelOptions& options,
+                         std::filesystem::path cache_folder, rhi::MessageCallback on_message)
     : precompiled_(std::move(precompiled)),
+      options_(options),
       cache_folder_(std::move(cache_folder)),
       on_message_(std::move(on_message)) {}
 
@@ -72,9 +74,9 @@ Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi:
   const std::vector<rhi::SpecializationValue> values = complete(shader.reflection(), given);
   const auto found = std::ranges::find_if(
       precompiled_, [&](const PrecompiledKernel& kernel) { return is_made_of(kernel, shader, values); });
-  if (found != precompiled_.end()) return {.info = found->entry(), .library = nullptr};
+  if (found != precompiled_.end() && !options_.watched) return {.info = found->entry(), .library = nullptr};
 
-  const ContentHash key = key_of(shader.spirv(), values, compiler(label));
+  const ContentHash key = key_of(shader.spirv(), values, options_, compiler(label));
   const std::shared_ptr<Entry> known = entry(key);
   const std::lock_guard lock(known->mutex);
   KernelLibraryHandle library = known->library.lock();
@@ -88,7 +90,8 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
                                          std::span<const rhi::SpecializationValue> values, const ContentHash& key,
                                          const std::string& label) {
   const auto start = std::chrono::steady_clock::now();
-  const Translation translation = translate(shader.spirv(), label, {.specialization = values});
+  const Translation translation = translate(
+      shader.spirv(), label, {.specialization = values, .robust = options_.robust, .watched = options_.watched});
   KernelCache& store = cache();
   TemporaryFolder folder = store.make_work_folder(label);
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;

@@ -19,6 +19,12 @@
 
 namespace tandem::cpu {
 
+/// How kernels are translated that are compiled at run time (TranslateOptions).
+struct KernelOptions {
+  bool robust = false;
+  bool watched = false;
+};
+
 /// Native code that runs a shader.
 struct Kernel {
   const kernel::KernelInfo* info = nullptr;
@@ -30,8 +36,10 @@ struct Kernel {
 /// compiled once.
 class KernelStore {
  public:
-  KernelStore(std::vector<PrecompiledKernel> precompiled, std::filesystem::path cache_folder,
-              rhi::MessageCallback on_message);
+  /// Precompiled kernels are used where they are: their shaders are known to stay inside of what is bound. None of them
+  /// is watched.
+  KernelStore(std::vector<PrecompiledKernel> precompiled, const KernelOptions& options,
+              std::filesystem::path cache_folder, rhi::MessageCallback on_message);
 
   /// Throws Error(unsupported) for SPIR-V that cannot be translated, Error(shader_compilation) when there is no
   /// compiler or it fails, Error(io) when the cache fails.
@@ -53,6 +61,7 @@ class KernelStore {
                               const ContentHash& key, const std::string& label);
 
   std::vector<PrecompiledKernel> precompiled_;
+  KernelOptions options_;
   std::filesystem::path cache_folder_;
   rhi::MessageCallback on_message_;
   std::mutex mutex_;  ///< of what follows

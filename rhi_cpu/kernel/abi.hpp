@@ -81,12 +81,18 @@ struct SampledImage {
   const Sampler* sampler = nullptr;
 };
 
+/// What a kernel made for a device with a time limit asks now and then whether it may go on.
+struct Watch {
+  void (*look)(const Watch& watch);  ///< throws to end the launch
+};
+
 /// One run of a kernel.
 struct Dispatch {
   const Resource* resources = nullptr;  ///< KernelInfo::resource_count of them
   const std::byte* push_constants = nullptr;
   std::uint32_t workgroup_count[3] = {1, 1, 1};
   std::uint32_t base_workgroup[3] = {0, 0, 0};  ///< id of the first
+  const Watch* watch = nullptr;                 ///< for kernels that look at it
 };
 
 /// rhi::BindingKind.

@@ -47,7 +47,8 @@ struct ShaderCall {
   const std::byte* shader_record = nullptr;  ///< its shaderRecordEXT block, aligned to 16
   std::uint32_t launch_id[3] = {0, 0, 0};
   std::uint32_t launch_size[3] = {1, 1, 1};
-  std::uint32_t depth = 0;  ///< rays in flight: 0 in the ray generation shader
+  std::uint32_t depth = 0;       ///< rays in flight: 0 in the ray generation shader
+  const Watch* watch = nullptr;  ///< for kernels that look at it
 
   /// The variable of the caller that holds the incoming payload, or the callable data.
   void* payload = nullptr;

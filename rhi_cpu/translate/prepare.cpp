@@ -99,4 +99,13 @@ std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const s
   return words;
 }
 
+std::vector<std::uint32_t> with_marked_loops(std::span<const std::uint32_t> spirv) {
+  std::vector<std::uint32_t> result(spirv.begin(), spirv.begin() + header_words);
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    if (operation(i) == spv::OpLoopMerge) result.push_back(1u << 16 | loop_mark);
+    result.insert(result.end(), i.begin(), i.end());
+  });
+  return result;
+}
+
 }  // namespace tandem::cpu

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <spirv_cross/spirv.hpp>
+
 #include "rhi/compute_pipeline.hpp"
 
 namespace tandem::cpu {
@@ -14,5 +16,11 @@ namespace tandem::cpu {
 /// Throws rhi::Error as translate() does.
 std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const std::string& label,
                                    std::span<const rhi::SpecializationValue> specialization);
+
+/// Stands in the header of a loop where its rounds are counted. No module that prepare() returns has this instruction.
+inline constexpr spv::Op loop_mark = spv::OpLifetimeStart;
+
+/// The words of prepare() with a loop_mark, without operands, in the header of each loop.
+std::vector<std::uint32_t> with_marked_loops(std::span<const std::uint32_t> spirv);
 
 }  // namespace tandem::cpu

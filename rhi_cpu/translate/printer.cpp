@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "rhi_cpu/translate/identifiers.hpp"
-#include "rhi_cpu/translate/kernel_names.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 
@@ -28,8 +27,8 @@ constexpr std::uint64_t inlining_limit = 50'000;
 }  // namespace
 
 Printer::Printer(const std::vector<std::uint32_t>& spirv, const std::string& label,
-                 const rhi::ShaderReflection& reflection, const std::string& entry_symbol)
-    : CompilerGLSL(spirv.data(), spirv.size()), label_(label), reflection_(reflection), entry_symbol_(entry_symbol) {}
+                 const rhi::ShaderReflection& reflection, const TranslateOptions& options)
+    : CompilerGLSL(spirv.data(), spirv.size()), label_(label), reflection_(reflection), options_(options) {}
 
 void Printer::fail(const std::string& what) const { refuse(label_, what); }
 
@@ -212,6 +211,8 @@ void Printer::print_module() {
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
   if (has_halves()) statement("#include \"rhi_cpu/kernel/half.hpp\"");
   if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
+  if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
+  if (options_.watched) statement("#include \"rhi_cpu/kernel/watch.hpp\"");
   statement("");
   statement("namespace {");
   statement("");
@@ -254,7 +255,9 @@ void Printer::print_members() {
     for (const char* built_in : {"NumWorkgroups", "WorkgroupId", "LocalInvocationId", "GlobalInvocationId"})
       statement("k::uvec3 built_in_", built_in, ";");
     statement("k::uint built_in_LocalInvocationIndex;");
+    if (options_.watched) statement("const k::Watch* watch;");
   }
+  if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
     if (variable.storage == spv::StorageClassPrivate) {
       const std::uint32_t type = pointee(variable.basetype);
@@ -274,6 +277,8 @@ void Printer::print_members() {
       statement("const ", descriptor_target(type), "* ", to_name(id), " = ", descriptor_member(type, first), ";");
     else
       statement("std::byte* ", to_name(id), " = ", first, ".data;");
+    if (options_.robust && is_buffer(variable.storage) && !is_array(type))
+      statement("std::size_t ", to_name(id), "_size = ", first, ".size;");
   });
   statement("");
 }
@@ -287,52 +292,6 @@ void Printer::print_constants() {
     statement("const ", type, " constant_", id, " = ", constant_initializer(constant), ";");
   }
   statement("");
-}
-
-void Printer::print_run() {
-  statement(fmt::format(
-      R"(void run(const k::Dispatch& dispatch, std::uint64_t first, std::uint64_t end) {{
-  const k::uvec3 count(dispatch.workgroup_count[0], dispatch.workgroup_count[1], dispatch.workgroup_count[2]);
-  const k::uvec3 base(dispatch.base_workgroup[0], dispatch.base_workgroup[1], dispatch.base_workgroup[2]);
-  for (std::uint64_t workgroup = first; workgroup < end; ++workgroup) {{
-    const k::uvec3 id = base + k::uvec3(workgroup % count.x, workgroup / count.x % count.y, workgroup / count.x / count.y);
-    k::uint index = 0;
-    for (k::uint z = 0; z < {2}u; ++z)
-      for (k::uint y = 0; y < {1}u; ++y)
-        for (k::uint x = 0; x < {0}u; ++x) {{
-          const k::uvec3 local(x, y, z);
-          Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, id * k::uvec3({0}u, {1}u, {2}u) + local, index++}}
-              .entry_point();
-        }}
-  }}
-}}
-)",
-      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2]));
-}
-
-void Printer::print_info() {
-  std::uint32_t resources = 0;
-  std::string slots;
-  for (const rhi::ShaderBinding& binding : reflection_.bindings) {
-    const char* kind = resource_kind_name(binding.kind);
-    if (kind == nullptr) fail("a sampled image or sampler binding");
-    slots += fmt::format("    {{{}, {}, {}, {}, k::ResourceKind::{}}},\n", binding.set, binding.binding, binding.count,
-                         resources, kind);
-    resources += std::max(binding.count, 1u);
-  }
-  const bool any = !reflection_.bindings.empty();
-  if (any) statement("constexpr k::BindingSlot binding_slots[] = {\n", slots, "};");
-  const std::string payload_size = incoming_payload_type_.empty() ? "0" : "sizeof(" + incoming_payload_type_ + ")";
-  statement(fmt::format(
-      "constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, {}, k::Stage::{}, {}, "
-      "{}, {}}};\n",
-      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
-      reflection_.bindings.size(), any ? "binding_slots" : "nullptr", is_traced() ? "nullptr" : "run",
-      stage_name(reflection_.stage), is_traced() ? "call" : "nullptr", reflection_.shader_record_size, payload_size));
-  statement("}  // namespace");
-  statement("");
-  statement("extern \"C\" __attribute__((visibility(\"default\"))) const tandem::kernel::KernelInfo* ", entry_symbol_,
-            "() { return &kernel_info; }");
 }
 
 void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross::Bitset&) {

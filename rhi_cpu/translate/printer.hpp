@@ -18,6 +18,7 @@
 #include "rhi_cpu/translate/operations.hpp"
 #include "rhi_cpu/translate/scalar_types.hpp"
 #include "rhi_cpu/translate/storage_classes.hpp"
+#include "rhi_cpu/translate/translate.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"
 
 namespace tandem::cpu {
@@ -37,7 +38,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   /// @param spirv a module from prepare()
   /// @param reflection of the same words
   Printer(const std::vector<std::uint32_t>& spirv, const std::string& label, const rhi::ShaderReflection& reflection,
-          const std::string& entry_symbol);
+          const TranslateOptions& options);
 
   /// The translation unit. Throws rhi::Error(unsupported), or what SPIRV-Cross throws.
   std::string compile() override;
@@ -63,6 +64,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   struct Address {
     std::string bytes;                   ///< C++ expression of type std::byte*
     std::string resource;                ///< C++ expression of the kernel::Resource, "" where it has none
+    std::string data = {};               ///< where the memory begins that `bytes` points into, "" where nobody knows
+    std::string size = {};               ///< and how many bytes it has
     std::uint32_t offset = 0;            ///< constant part of the distance to `bytes`
     std::uint32_t matrix_stride = 0;     ///< of the matrices there
     std::uint32_t component_stride = 0;  ///< of the vector there, 0: tight
@@ -111,6 +114,9 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_access_chain(const Instruction& i);
   void chain_in_buffer(const Instruction& i, Address address, std::size_t first_index);
   void chain_in_variable(const Instruction& i);
+  /// The kernel::Resource that the operands from `k` on name, in an array of descriptors of type `type_id`; both are
+  /// moved behind it.
+  std::string descriptor_element(const Instruction& i, std::size_t& k, std::uint32_t& type_id);
   void index_address(Address& address, std::uint32_t index_id, std::uint32_t stride);
   std::string load_text(std::uint32_t type_id, const Address& address);
   std::string store_text(std::uint32_t type_id, const Address& address, const std::string& value);
@@ -129,6 +135,17 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string pointer_value(std::uint32_t pointer_id);
   void print_pointer_access_chain(const Instruction& i);
   void print_pointer_relation(const Instruction& i);
+
+  // printer_robust.cpp: what stays inside of what is bound, and loops that can be ended.
+  /// Bytes from the first to the last that a value of the type has there.
+  std::uint32_t memory_extent(std::uint32_t type_id, const Address& address) const;
+  bool is_guarded(const Address& address) const;
+  std::string guarded_load(std::uint32_t type_id, const Address& address);
+  std::string guarded_store(std::uint32_t type_id, const Address& address, const std::string& value);
+  std::string guarded_pointer(std::uint32_t type_id, const Address& address);
+  std::string index_inside(const Type& type, const std::string& index) const;
+  std::string descriptor_count(std::uint32_t variable) const;
+  void print_look();
 
   // printer_atomics.cpp
   std::string atomic_call(const Instruction& i, const char* function, BaseType base, const std::string& arguments);
@@ -258,7 +275,7 @@ class Printer : public spirv_cross::CompilerGLSL {
 
   std::string label_;
   rhi::ShaderReflection reflection_;
-  std::string entry_symbol_;
+  TranslateOptions options_;
   std::array<std::uint32_t, 3> workgroup_size_ = {1, 1, 1};
   std::unordered_map<std::uint32_t, std::string> names_;           ///< of Function and Private variables' declarations
   std::unordered_map<std::uint32_t, std::uint32_t> initializers_;  ///< constant that a Function variable starts as

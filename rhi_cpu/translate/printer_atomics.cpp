@@ -14,8 +14,9 @@ constexpr std::size_t first_value = 3;
 
 std::string Printer::atomic_call(const Instruction& i, const char* function, BaseType base,
                                  const std::string& arguments) {
-  return fmt::format("k::atomic_{}<{}>({}{})", function, scalar_name(base), printed(address_of(i.operand(pointer))),
-                     arguments);
+  const std::uint32_t type_id = pointee(expression_type_id(i.operand(pointer)));
+  return fmt::format("k::atomic_{}<{}>({}{})", function, scalar_name(base),
+                     guarded_pointer(type_id, address_of(i.operand(pointer))), arguments);
 }
 
 BaseType Printer::atomic_component(const Instruction& i) {

@@ -43,9 +43,9 @@ void Printer::print_split_into_pointer(const Instruction& i, const char* functio
   if (!is_buffer_pointer(pointer))
     return define(i, fmt::format("k::{}({}, {})", function, value(number), value(pointer)));
   const std::uint32_t type_id = pointee(expression_type_id(pointer));
-  define(i,
-         fmt::format("[&] {{ {} second{{}}; const auto first = k::{}({}, second); {}; return first; }}()",
-                     type_name(type_id), function, value(number), store_text(type_id, address_of(pointer), "second")));
+  define(i, fmt::format("[&] {{ {} second{{}}; const auto first = k::{}({}, second); {}; return first; }}()",
+                        type_name(type_id), function, value(number),
+                        guarded_store(type_id, address_of(pointer), "second")));
 }
 
 void Printer::print_split_into_struct(const Instruction& i, const char* function) {

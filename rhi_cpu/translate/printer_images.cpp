@@ -46,7 +46,8 @@ const char* Printer::descriptor_target(const Type& type) const {
 }
 
 std::string Printer::descriptor_member(const Type& type, const std::string& resource) const {
-  return fmt::format("reinterpret_cast<const {}*>({}.data)", descriptor_target(type), resource);
+  const char* form = options_.robust ? "k::bound<{}>({}.data)" : "reinterpret_cast<const {}*>({}.data)";
+  return fmt::format(fmt::runtime(form), descriptor_target(type), resource);
 }
 
 std::string Printer::descriptor_value(std::uint32_t pointer_id) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "rhi_cpu/translate/prepare.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/spirv_names.hpp"
 
@@ -99,6 +100,7 @@ Instruction Printer::view(const spirv_cross::Instruction& instruction) const {
 
 void Printer::emit_instruction(const spirv_cross::Instruction& instruction) {
   const Instruction i = view(instruction);
+  if (i.op() == loop_mark) return print_look();
   if (const Operation* operation = find_operation(i.op())) return print_operation(i, *operation);
   if (const PrintFunction print = by_hand(i.op())) return (this->*print)(i);
   fail(instruction_name(i.op(), i.words()));

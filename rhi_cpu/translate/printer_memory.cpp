@@ -28,10 +28,20 @@ Printer::Address Printer::address_of(std::uint32_t pointer_id) {
   if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) return known->second;
   const auto* variable = maybe_get<SPIRVariable>(pointer_id);
   if (variable == nullptr || variable->phi_variable) return {.bytes = to_expression(pointer_id), .resource = ""};
-  if (variable->storage == spv::StorageClassPushConstant) return {.bytes = "push_constants", .resource = ""};
-  if (variable->storage == spv::StorageClassShaderRecordBufferKHR) return {.bytes = "shader_record", .resource = ""};
-  if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = to_name(pointer_id)};
-  return {.bytes = to_name(pointer_id), .resource = fmt::format("resources[{}]", first_resource_of(pointer_id))};
+  const auto known = [](const char* name, std::uint32_t size) {
+    return Address{.bytes = name, .resource = "", .data = name, .size = std::to_string(size)};
+  };
+  if (variable->storage == spv::StorageClassPushConstant)
+    return known("push_constants", reflection_.push_constant_size);
+  if (variable->storage == spv::StorageClassShaderRecordBufferKHR)
+    return known("shader_record", reflection_.shader_record_size);
+  const std::string name = to_name(pointer_id);
+  if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = name};
+  const bool is_bound = binding_of(pointer_id) != nullptr;
+  return {.bytes = name,
+          .resource = fmt::format("resources[{}]", first_resource_of(pointer_id)),
+          .data = is_bound ? name : "",
+          .size = name + "_size"};
 }
 
 std::string Printer::printed(const Address& address) const {
@@ -54,20 +64,13 @@ void Printer::print_access_chain(const Instruction& i) {
 
 void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t first_index) {
   std::uint32_t type_id = pointee(expression_type_id(i.operand(0)));
-  const Type* type = &get<Type>(type_id);
   std::size_t k = first_index;
   if (address.bytes.empty() && k < i.operand_count()) {
-    // An array of descriptors, flattened in the order in which its elements are bound.
-    std::string index;
-    for (; is_array(*type); ++k, type_id = type->parent_type, type = &get<Type>(type_id)) {
-      if (k == i.operand_count()) fail("a pointer to an array of buffers");
-      const std::string next = value(i.operand(k));
-      index = index.empty() ? fmt::format("std::size_t({})", next)
-                            : fmt::format("({} * {} + {})", index, array_length(*type), next);
-    }
-    address.resource += "[" + index + "]";
-    address.bytes = address.resource + ".data";
+    address.resource = descriptor_element(i, k, type_id);
+    address.bytes = address.data = address.resource + ".data";
+    address.size = address.resource + ".size";
   }
+  const Type* type = &get<Type>(type_id);
   for (; k < i.operand_count(); ++k) {
     const std::uint32_t index = i.operand(k);
     if (is_array(*type)) {
@@ -96,15 +99,35 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
 }
 
 void Printer::chain_in_variable(const Instruction& i) {
-  std::string text = value(i.operand(0));
-  const Type* type = &get<Type>(pointee(expression_type_id(i.operand(0))));
-  for (std::size_t k = 1; k < i.operand_count(); ++k) {
+  const std::uint32_t base = i.operand(0);
+  std::uint32_t type_id = pointee(expression_type_id(base));
+  std::string text = value(base);
+  std::size_t k = 1;
+  if (type_of(base).storage == spv::StorageClassUniformConstant && is_array(get<Type>(type_id)))
+    text = descriptor_element(i, k, type_id);
+  const Type* type = &get<Type>(type_id);
+  for (; k < i.operand_count(); ++k) {
     const auto* constant = maybe_get<SPIRConstant>(i.operand(k));
     const std::uint32_t index = constant != nullptr ? constant->scalar() : 0;
-    text = constant != nullptr ? element(text, *type, index) : fmt::format("{}[{}]", text, value(i.operand(k)));
+    text = constant != nullptr ? element(text, *type, index)
+                               : fmt::format("{}[{}]", text, index_inside(*type, value(i.operand(k))));
     type = &element_type(*type, index);
   }
   set<SPIRExpression>(i.result(), text, i.result_type(), true);
+}
+
+std::string Printer::descriptor_element(const Instruction& i, std::size_t& k, std::uint32_t& type_id) {
+  // An array of arrays is flattened in the order in which its elements are bound.
+  std::string index;
+  for (; is_array(get<Type>(type_id)); ++k, type_id = get<Type>(type_id).parent_type) {
+    if (k == i.operand_count()) fail("a pointer to an array of descriptors");
+    const std::string next = value(i.operand(k));
+    index = index.empty() ? fmt::format("std::size_t({})", next)
+                          : fmt::format("({} * {} + {})", index, array_length(get<Type>(type_id)), next);
+  }
+  const std::string array = to_name(i.operand(0));
+  if (!options_.robust) return fmt::format("{}[{}]", array, index);
+  return fmt::format("k::element({}, {}, {})", array, descriptor_count(i.operand(0)), index);
 }
 
 std::string Printer::load_text(std::uint32_t type_id, const Address& address) {
@@ -186,7 +209,7 @@ void Printer::print_load(const Instruction& i) {
   const std::uint32_t pointer = i.operand(0);
   const Type& type = get<Type>(i.result_type());
   if (is_buffer_pointer(pointer))
-    define(i, load_text(i.result_type(), address_of(pointer)));
+    define(i, guarded_load(i.result_type(), address_of(pointer)));
   else if (type_is_opaque_value(type) && !is_array(type))
     // SPIRV-Cross hoists none of these; what the text says can be said wherever the value is used.
     set<SPIRExpression>(i.result(), fmt::format("({})", descriptor_value(pointer)), i.result_type(), true);
@@ -201,14 +224,14 @@ void Printer::print_store(const Instruction& i) { print_store_to(i.operand(0), v
 void Printer::print_copy_memory(const Instruction& i) {
   const std::uint32_t to = i.operand(0), from = i.operand(1);
   if (is_buffer_pointer(from))
-    print_store_to(to, load_text(pointee(expression_type_id(from)), address_of(from)));
+    print_store_to(to, guarded_load(pointee(expression_type_id(from)), address_of(from)));
   else
     print_store_to(to, value(from));
 }
 
 void Printer::print_store_to(std::uint32_t pointer_id, const std::string& text) {
   if (is_buffer_pointer(pointer_id))
-    statement(store_text(pointee(expression_type_id(pointer_id)), address_of(pointer_id), text), ";");
+    statement(guarded_store(pointee(expression_type_id(pointer_id)), address_of(pointer_id), text), ";");
   else
     statement(value(pointer_id), " = ", text, ";");
 }

@@ -11,10 +11,11 @@
 namespace tandem::cpu {
 
 Translation translate(std::span<const std::uint32_t> spirv, const std::string& label, const TranslateOptions& options) {
-  const std::vector<std::uint32_t> words = prepare(spirv, label, options.specialization);
+  std::vector<std::uint32_t> words = prepare(spirv, label, options.specialization);
   const rhi::ShaderReflection reflection = rhi::reflect_valid(words, label);
+  if (options.watched) words = with_marked_loops(words);
   try {
-    return {Printer(words, label, reflection, options.entry_symbol).compile()};
+    return {Printer(words, label, reflection, options).compile()};
   } catch (const rhi::Error&) {
     throw;
   } catch (const std::exception& error) {

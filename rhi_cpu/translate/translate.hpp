@@ -18,6 +18,11 @@ struct TranslateOptions {
   std::span<const rhi::SpecializationValue> specialization;
   /// The exported function, extern "C" const tandem::kernel::KernelInfo* entry_symbol().
   std::string entry_symbol = "tandem_kernel";
+  /// Accesses outside of buffers, images, descriptor arrays and the shader's own arrays read zero and write nothing.
+  /// Buffer references and pointers as values are not checked.
+  bool robust = false;
+  /// Loops look at kernel::Dispatch::watch.
+  bool watched = false;
 };
 
 struct Translation {

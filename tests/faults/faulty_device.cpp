@@ -230,6 +230,10 @@ class FaultyDevice final : public rhi::Device {
     const std::vector<std::uint32_t> words = module.words();
     return inner().create_shader_module({words, desc.label, true});
   }
+  rhi::SamplerHandle create_sampler(const rhi::SamplerDesc& desc) override { return inner().create_sampler(desc); }
+  std::vector<std::string> refusals(const rhi::ShaderModuleHandle& shader) const override {
+    return state_->device->refusals(shader);
+  }
   rhi::ComputePipelineHandle create_compute_pipeline(const rhi::ComputePipelineDesc& desc) override {
     rhi::ComputePipelineDesc edited = desc;
     if (state_->edits.specialization) state_->edits.specialization(edited.specialization);

@@ -114,6 +114,7 @@ rhi::DeviceHandle open_device(const std::string& name, const RenderOptions& opti
   rhi::DeviceDesc desc;
   desc.name = name;
   desc.driver_validation = options.validation;
+  desc.robust_access = false;  // the path tracer stays inside of its buffers
   desc.thread_count = options.threads;
   desc.on_message = print_message;
   return create_device(desc);

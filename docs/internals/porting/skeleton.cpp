@@ -90,9 +90,8 @@ class CommandList final : public rhi::CommandList {
 
   /// Runs the commands, once.
   void execute() {
-    if (submitted_) throw rhi::Error(rhi::ErrorCode::invalid_argument, label(), "the list was submitted before");
     submitted_ = true;
-    for (const std::function<void()>& command : std::exchange(commands_, {})) command();
+    for (const std::function<void()>& command : commands_) command();
   }
 
  private:
@@ -141,6 +140,10 @@ class Device final : public rhi::Device {
     refuse(label, "compaction");
   }
   rhi::TextureHandle create_texture(const rhi::TextureDesc& desc) override { refuse(desc.label, "textures"); }
+  rhi::SamplerHandle create_sampler(const rhi::SamplerDesc& desc) override { refuse(desc.label, "samplers"); }
+  std::vector<std::string> refusals(const rhi::ShaderModuleHandle&) const override {
+    return {"the skeleton runs no shaders"};
+  }
   rhi::ComputePipelineHandle create_compute_pipeline(const rhi::ComputePipelineDesc& desc) override {
     refuse(desc.label, "compute pipelines");
   }

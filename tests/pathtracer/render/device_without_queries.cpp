@@ -30,6 +30,10 @@ class DeviceWithoutQueries final : public rhi::Device {
   rhi::ShaderModuleHandle create_shader_module(const rhi::ShaderModuleDesc& desc) override {
     return device_.create_shader_module(desc);
   }
+  rhi::SamplerHandle create_sampler(const rhi::SamplerDesc& desc) override { return device_.create_sampler(desc); }
+  std::vector<std::string> refusals(const rhi::ShaderModuleHandle& shader) const override {
+    return device_.refusals(shader);
+  }
   rhi::ComputePipelineHandle create_compute_pipeline(const rhi::ComputePipelineDesc& desc) override {
     throw rhi::Error(rhi::ErrorCode::unsupported, desc.label, "this device has no ray queries");
   }

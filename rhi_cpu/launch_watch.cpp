@@ -1,0 +1,27 @@
+#include "rhi_cpu/launch_watch.hpp"
+
+#include <type_traits>
+
+#include <fmt/format.h>
+
+#include "rhi/error.hpp"
+
+namespace tandem::cpu {
+
+LaunchWatch::LaunchWatch(std::chrono::milliseconds limit, const std::string& label)
+    : limit_(limit),
+      end_(std::chrono::steady_clock::now() + limit),
+      label_(label),
+      watch_{.watch = {.look = look}, .owner = this} {}
+
+void LaunchWatch::look(const kernel::Watch& watch) {
+  static_assert(std::is_standard_layout_v<OwnWatch>, "its first member has its address");
+  const LaunchWatch& owner = *reinterpret_cast<const OwnWatch&>(watch).owner;
+  if (std::chrono::steady_clock::now() < owner.end_) return;
+  throw rhi::Error(rhi::ErrorCode::timeout, owner.label_,
+                   fmt::format("it ran for more than the {} ms of the device's time limit and was stopped; a loop may "
+                               "have no end",
+                               owner.limit_.count()));
+}
+
+}  // namespace tandem::cpu

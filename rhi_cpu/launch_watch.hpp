@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "rhi_cpu/kernel/abi.hpp"
+
+namespace tandem::cpu {
+
+/// Ends a launch that takes longer than the device's time limit. Kernels call it, from all threads.
+class LaunchWatch {
+ public:
+  /// @param label the pipeline's. It must outlive this.
+  LaunchWatch(std::chrono::milliseconds limit, const std::string& label);
+
+  /// For kernel::Dispatch::watch. Its look throws rhi::Error(timeout) once the time is over.
+  const kernel::Watch* watch() const noexcept { return &watch_.watch; }
+
+ private:
+  /// `watch` comes first: kernels know no more of it.
+  struct OwnWatch {
+    kernel::Watch watch;
+    const LaunchWatch* owner;
+  };
+
+  static void look(const kernel::Watch& watch);
+
+  std::chrono::milliseconds limit_;
+  std::chrono::steady_clock::time_point end_;
+  const std::string& label_;
+  OwnWatch watch_;
+};
+
+}  // namespace tandem::cpu

@@ -1,0 +1,58 @@
+// What stands behind the functions of a kernel: the loop over workgroups, and what the kernel says of itself.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/printer.hpp"
+
+namespace tandem::cpu {
+
+void Printer::print_run() {
+  statement(fmt::format(
+      R"(void run(const k::Dispatch& dispatch, std::uint64_t first, std::uint64_t end) {{
+  const k::uvec3 count(dispatch.workgroup_count[0], dispatch.workgroup_count[1], dispatch.workgroup_count[2]);
+  const k::uvec3 base(dispatch.base_workgroup[0], dispatch.base_workgroup[1], dispatch.base_workgroup[2]);
+  for (std::uint64_t workgroup = first; workgroup < end; ++workgroup) {{
+    const k::uvec3 id = base + k::uvec3(workgroup % count.x, workgroup / count.x % count.y, workgroup / count.x / count.y);
+    k::uint index = 0;
+    for (k::uint z = 0; z < {2}u; ++z)
+      for (k::uint y = 0; y < {1}u; ++y)
+        for (k::uint x = 0; x < {0}u; ++x) {{
+          const k::uvec3 local(x, y, z);
+          Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, id * k::uvec3({0}u, {1}u, {2}u) + local, index++{3}}}
+              .entry_point();
+        }}
+  }}
+}}
+)",
+      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], options_.watched ? ", dispatch.watch" : ""));
+}
+
+void Printer::print_info() {
+  std::uint32_t resources = 0;
+  std::string slots;
+  for (const rhi::ShaderBinding& binding : reflection_.bindings) {
+    const char* kind = resource_kind_name(binding.kind);
+    if (kind == nullptr) fail("a sampled image or sampler binding");
+    slots += fmt::format("    {{{}, {}, {}, {}, k::ResourceKind::{}}},\n", binding.set, binding.binding, binding.count,
+                         resources, kind);
+    resources += std::max(binding.count, 1u);
+  }
+  const bool any = !reflection_.bindings.empty();
+  if (any) statement("constexpr k::BindingSlot binding_slots[] = {\n", slots, "};");
+  const std::string payload_size = incoming_payload_type_.empty() ? "0" : "sizeof(" + incoming_payload_type_ + ")";
+  statement(fmt::format(
+      "constexpr k::KernelInfo kernel_info = {{k::abi_version, {{{}, {}, {}}}, {}, {}, {}, {}, {}, k::Stage::{}, {}, "
+      "{}, {}}};\n",
+      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], reflection_.push_constant_size, resources,
+      reflection_.bindings.size(), any ? "binding_slots" : "nullptr", is_traced() ? "nullptr" : "run",
+      stage_name(reflection_.stage), is_traced() ? "call" : "nullptr", reflection_.shader_record_size, payload_size));
+  statement("}  // namespace");
+  statement("");
+  statement("extern \"C\" __attribute__((visibility(\"default\"))) const tandem::kernel::KernelInfo* ",
+            options_.entry_symbol, "() { return &kernel_info; }");
+}
+
+}  // namespace tandem::cpu

@@ -1,0 +1,86 @@
+// Accesses of kernels for devices with robust access, and loops of kernels for devices with a time limit.
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "rhi_cpu/translate/printer.hpp"
+
+namespace tandem::cpu {
+
+using spirv_cross::SPIRType;
+
+std::uint32_t Printer::memory_extent(std::uint32_t type_id, const Address& address) const {
+  const Type& type = get<Type>(type_id);
+  const std::uint32_t scalar = type.width / 8;
+  if (is_array(type))
+    return (array_length(type) - 1) * get_decoration(type_id, spv::DecorationArrayStride) +
+           memory_extent(type.parent_type, address);
+  if (is_pointer(type)) return sizeof(std::uint64_t);
+  if (type.basetype == SPIRType::Struct) {
+    std::uint32_t extent = 0;
+    for (std::uint32_t i = 0; i < type.member_types.size(); ++i) {
+      const Address member = {.bytes = "",
+                              .resource = "",
+                              .matrix_stride = matrix_stride(type.self, i),
+                              .row_major = has_member_decoration(type.self, i, spv::DecorationRowMajor)};
+      extent = std::max(extent, get_member_decoration(type.self, i, spv::DecorationOffset) +
+                                    memory_extent(type.member_types[i], member));
+    }
+    return extent;
+  }
+  if (type.columns > 1) {
+    const std::uint32_t lines = address.row_major ? type.vecsize : type.columns;
+    const std::uint32_t length = address.row_major ? type.columns : type.vecsize;
+    return (lines - 1) * address.matrix_stride + length * scalar;
+  }
+  const std::uint32_t stride = address.component_stride != 0 ? address.component_stride : scalar;
+  return (type.vecsize - 1) * stride + scalar;
+}
+
+bool Printer::is_guarded(const Address& address) const { return options_.robust && !address.data.empty(); }
+
+std::string Printer::guarded_load(std::uint32_t type_id, const Address& address) {
+  if (!is_guarded(address)) return load_text(type_id, address);
+  Address inside = address;
+  inside.bytes = "inside";
+  inside.offset = 0;
+  return fmt::format("k::read_inside<{}>({}, {}, {}, [](const std::byte* inside) {{ return {}; }})",
+                     memory_extent(type_id, address), address.data, address.size, printed(address),
+                     load_text(type_id, inside));
+}
+
+std::string Printer::guarded_store(std::uint32_t type_id, const Address& address, const std::string& value) {
+  if (!is_guarded(address)) return store_text(type_id, address, value);
+  Address inside = address;
+  inside.bytes = "inside";
+  inside.offset = 0;
+  return fmt::format("k::write_inside<{}>({}, {}, {}, [&](std::byte* inside) {{ {}; }})",
+                     memory_extent(type_id, address), address.data, address.size, printed(address),
+                     store_text(type_id, inside, value));
+}
+
+std::string Printer::guarded_pointer(std::uint32_t type_id, const Address& address) {
+  if (!is_guarded(address)) return printed(address);
+  return fmt::format("k::pointer_inside<{}>({}, {}, {}, k::Nowhere{{}})", memory_extent(type_id, address), address.data,
+                     address.size, printed(address));
+}
+
+std::string Printer::index_inside(const Type& type, const std::string& index) const {
+  if (!options_.robust || !is_array(type)) return index;
+  return fmt::format("k::index_inside({}, std::size_t({}))", array_length(type), index);
+}
+
+std::string Printer::descriptor_count(std::uint32_t variable) const {
+  const rhi::ShaderBinding* binding = binding_of(variable);
+  if (binding == nullptr) return "0";
+  if (binding->count != 0) return std::to_string(binding->count);
+  return fmt::format("resources[{}].size", first_resource_of(variable));
+}
+
+void Printer::print_look() {
+  const std::string watch = is_traced() ? "shader_call.watch" : "watch";
+  statement("if (--rounds == 0) rounds = k::look(", watch, ");");
+}
+
+}  // namespace tandem::cpu
