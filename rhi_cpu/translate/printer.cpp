@@ -314,8 +314,10 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
       parameters += (is_constant ? "const std::byte* " : "std::byte* ") + to_name(parameter.id);
       addresses_[parameter.id] = {.bytes = to_name(parameter.id), .resource = ""};
     } else {
-      const bool by_value = type.storage == spv::StorageClassUniformConstant;
-      parameters += type_name(pointee(parameter.type)) + (by_value ? " " : "& ") + to_name(parameter.id);
+      const std::uint32_t target = pointee(parameter.type);
+      const bool is_descriptor = type.storage == spv::StorageClassUniformConstant;
+      parameters += (is_descriptor ? descriptor_parameter(get<Type>(target)) : type_name(target) + "&") + " " +
+                    to_name(parameter.id);
     }
   }
   statement(inlined || is_entry ? "[[gnu::always_inline]] " : "", "inline ", type_name(function.return_type), " ",

@@ -217,7 +217,9 @@ class Printer : public spirv_cross::CompilerGLSL {
   bool is_descriptor(const Type& type) const;
   const char* descriptor_target(const Type& type) const;
   std::string descriptor_member(const Type& type, const std::string& resource) const;
-  /// What the UniformConstant pointer `pointer_id` points at.
+  /// The type of a parameter that is a pointer to `type`.
+  std::string descriptor_parameter(const Type& type);
+  /// What the UniformConstant pointer `pointer_id` points at; of an array, its elements.
   std::string descriptor_value(std::uint32_t pointer_id);
   /// Refuses image operands, whose mask is operand `mask`, that name a sample.
   void refuse_sample(const Instruction& i, std::size_t mask) const;

@@ -50,8 +50,13 @@ std::string Printer::descriptor_member(const Type& type, const std::string& reso
   return fmt::format(fmt::runtime(form), descriptor_target(type), resource);
 }
 
+std::string Printer::descriptor_parameter(const Type& type) {
+  return is_array(type) ? "const k::Resource*" : type_name(type);
+}
+
 std::string Printer::descriptor_value(std::uint32_t pointer_id) {
-  const Type& type = type_of(pointer_id);
+  const Type& type = get<Type>(pointee(expression_type_id(pointer_id)));
+  if (is_array(type)) return value(pointer_id);
   // An element of an array of descriptors is a kernel::Resource; a variable points at what the host has bound; a
   // parameter is a value.
   const auto* variable = maybe_get<SPIRVariable>(pointer_id);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <string>
@@ -149,6 +150,14 @@ const Case cases[] = {
      {(15u << 6 | 63u) | (16u << 5 | 16u) << 22},
      4,
      floats({1.984375f, 0, 3, 1})},
+    // The largest finite number of 11 bits; infinity; 2^-16 = 2^-14 * 8 / 32.
+    {"r11f_g11f_b10f",
+     TextureFormat::rg11b10_float,
+     "",
+     "1e9, uintBitsToFloat(0x7f800000), 1.52587890625e-05, 0",
+     {0x7bfu | 0x7c0u << 11 | 8u << 22},
+     4,
+     floats({65024, INFINITY, 0x1p-16f, 1})},
     // No shader names these.
     {"", TextureFormat::bgra8_unorm, "", "0.5, 2.0, -1.0, 1.0", {0, 255, 128, 255}, 1, floats({128 / 255.0f, 1, 0, 1})},
     {"", TextureFormat::d16_unorm, "", unit, {32768}, 2, floats({32768 / 65535.0f, 0, 0, 1})},
@@ -195,7 +204,7 @@ std::string format_shader(bool named) {
 
 TEST_CASE("texels are written and read in every format, which the shader names or leaves to the image") {
   constexpr std::size_t count = std::size(cases);
-  REQUIRE(count == tandem::rhi::texture_format_count);
+  REQUIRE(count == tandem::rhi::texture_format_count + 1);  // rg11b10_float twice
   for (const bool named : {true, false}) {
     CAPTURE(named);
     const Kernel kernel(format_shader(named));

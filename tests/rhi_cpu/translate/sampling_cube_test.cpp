@@ -143,6 +143,8 @@ TEST_CASE("gradients of a direction become gradients on the face") {
   CHECK(at({1, 0, 0}, {1, 0, 0}, {}) == 0);
   CHECK(at({2, 0, -1}, {4, 0, 0}, {}) == near(2));
   CHECK(at({-2, 0, -1}, {-4, 0, 0}, {}) == near(2));
+  // s = (1 + z / -x) / 2: (1 / 2 + 2 * 1 / 4) / 2 of 8 texels.
+  CHECK(at({-2, 0, -1}, {-2, 0, 1}, {}) == near(2));
 }
 
 }  // namespace

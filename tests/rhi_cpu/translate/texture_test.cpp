@@ -48,6 +48,7 @@ TEST_CASE("images and samplers, joined and apart, in arrays and as parameters") 
     float of_sampler(sampler s) { return textureLod(sampler2D(apart, s), vec2(0.5), 0.0).x; }
     float of_buffer(samplerBuffer b, int i) { return texelFetch(b, i).x; }
     float of_words(textureBuffer b, int i) { return texelFetch(b, i).x; }
+    float of_array(sampler2D s[2], int i) { return textureLod(s[i], vec2(0.25, 0.5), 0.0).x + textureLod(s[1], vec2(0.75, 0.5), 0.0).x; }
     void main() {
       int one = result.length() / 20;
       result[0] = of(joined, 0.25);
@@ -62,6 +63,7 @@ TEST_CASE("images and samplers, joined and apart, in arrays and as parameters") 
       result[9] = of_words(words[one], 0) + texelFetch(words[nonuniformEXT(0)], 1).x;
       result[10] = float(textureSize(texels) * 10 + textureSize(words[one]));
       result[11] = textureLod(sampler2DShadow(apart, shadow), vec3(0.75, 0.5, 3.0), 0.0);
+      result[13] = of_array(more, one - 1);
       result[12] = texelFetch(texels, 3).x + texelFetch(texels, -1).x + of_words(words[0], 99);
     })";
   const TestImage a({2, 1, 1}, 2, {{1, 2}}), b({2, 1, 1}, 2, {{10, 20}}), c({2, 1, 1}, 2, {{100, 200}}),
@@ -81,8 +83,8 @@ TEST_CASE("images and samplers, joined and apart, in arrays and as parameters") 
                 Resource{}, resource_of(e.image()), resource_of(b.image()), resource_of(nearest), Resource{},
                 resource_of(linear), resource_of(line.image()), resource_of(pair.image()), resource_of(single.image()),
                 resource_of(compare)});
-    result.resize(13);
-    CHECK(result == std::vector<float>{1, 110, 200, 2000, 15, 15000, 22000, 1500, 7, 13, 31, 1, 0});
+    result.resize(14);
+    CHECK(result == std::vector<float>{1, 110, 200, 2000, 15, 15000, 22000, 1500, 7, 13, 31, 1, 0, 210});
     CHECK(kernel.info().bindings[1].kind == ResourceKind::combined_image_sampler);
     CHECK(kernel.info().bindings[4].kind == ResourceKind::sampled_image);
     CHECK(kernel.info().bindings[6].kind == ResourceKind::sampler);

@@ -69,6 +69,31 @@ TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
       "capability GroupNonUniform and built-in SubgroupSize are not supported");
 }
 
+TEST_CASE("what has no level of detail outside of a fragment shader is named") {
+  const std::string image =
+      "%texel = OpTypeVector %float 4\n%plane = OpTypeVector %float 2\n%image = OpTypeImage %float 2D 0 0 0 1 Unknown\n"
+      "%both = OpTypeSampledImage %image\n%pointer = OpTypePointer UniformConstant %both\n"
+      "%texture = OpVariable %pointer UniformConstant\n%at = OpConstantComposite %plane %one %one\n";
+  const std::string load = "%s = OpLoad %both %texture\n";
+  const auto refused = [&](const std::string& instruction, const std::string& what) {
+    check_refused(assemble(module("OpCapability ImageQuery\n", "", image, load + instruction)), ErrorCode::unsupported,
+                  what);
+  };
+  refused("%r = OpImageSampleImplicitLod %texel %s %at\n", "OpImageSampleImplicitLod is");
+  refused("%r = OpImageSampleImplicitLod %texel %s %at Bias %one\n", "OpImageSampleImplicitLod is");
+  refused("%r = OpImageSampleDrefImplicitLod %float %s %at %one\n", "OpImageSampleDrefImplicitLod is");
+  refused("%r = OpImageSampleProjImplicitLod %texel %s %at\n", "OpImageSampleProjImplicitLod is");
+  refused("%r = OpImageQueryLod %plane %s %at\n", "OpImageQueryLod is");
+  check_refused(assemble(module("OpCapability SampledRect\n", "", "", "")), ErrorCode::unsupported,
+                "capability SampledRect is");
+  check_refused(assemble(module("", "", "%i = OpTypeImage %float Rect 0 0 0 1 Unknown\n", "")), ErrorCode::unsupported,
+                "OpTypeImage of dimension Rect is");
+  check_refused(assemble(module("", "", "%i = OpTypeImage %float 2D 0 0 0 0 Unknown\n", "")), ErrorCode::unsupported,
+                "OpTypeImage that may be sampled or not is");
+  check_refused(assemble(module("", "", "%i = OpTypeImage %float 2D 0 0 1 1 Unknown\n", "")), ErrorCode::unsupported,
+                "OpTypeImage with several samples is");
+}
+
 TEST_CASE("capabilities, models, modes, storage classes, decorations and built-ins are named") {
   check_refused(assemble(module("OpCapability Geometry\n", "", "", "")), ErrorCode::unsupported,
                 "capability Geometry is");
