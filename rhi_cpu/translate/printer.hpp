@@ -133,6 +133,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   /// Refuses a pointer to what would need more than an address to be loaded.
   void check_pointer_value(std::uint32_t pointer_id, const Address& address) const;
   std::string pointer_value(std::uint32_t pointer_id);
+  void print_pointer_copy(const Instruction& i);
   void print_pointer_access_chain(const Instruction& i);
   void print_pointer_relation(const Instruction& i);
 

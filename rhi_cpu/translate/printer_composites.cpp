@@ -87,7 +87,10 @@ void Printer::print_shuffle(const Instruction& i) {
   define(i, fmt::format("{}({})", type_name(i.result_type()), elements));
 }
 
-void Printer::print_copy(const Instruction& i) { define(i, value(i.operand(0))); }
+void Printer::print_copy(const Instruction& i) {
+  if (is_buffer_pointer(i.operand(0))) return print_pointer_copy(i);
+  define(i, value(i.operand(0)));
+}
 
 void Printer::print_copy_logical(const Instruction& i) {
   // Value types do not depend on memory layout; names may differ.

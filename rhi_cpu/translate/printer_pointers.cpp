@@ -50,6 +50,17 @@ std::string Printer::pointer_value(std::uint32_t pointer_id) {
   return printed(address);
 }
 
+void Printer::print_pointer_copy(const Instruction& i) {
+  const std::uint32_t pointer = i.operand(0);
+  const auto* variable = maybe_get<SPIRVariable>(pointer);
+  const bool is_place = addresses_.contains(pointer) || (variable != nullptr && !variable->phi_variable);
+  if (!is_place || pointer_values_.contains(i.result())) return define(i, pointer_value(pointer));
+  // Another name of the same place.
+  const Address address = address_of(pointer);
+  addresses_[i.result()] = address;
+  set<SPIRExpression>(i.result(), fmt::format("({})", printed(address)), i.result_type(), true);
+}
+
 void Printer::print_pointer_access_chain(const Instruction& i) {
   const std::uint32_t pointer = i.operand(0), pointer_type = expression_type_id(pointer);
   const std::uint32_t stride = get_decoration(pointer_type, spv::DecorationArrayStride);

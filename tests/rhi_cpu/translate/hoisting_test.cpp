@@ -81,19 +81,21 @@ struct Memory {
 };
 
 TEST_CASE("a pointer that is loaded in a loop is followed behind it") {
-  const std::string text = module("OpCapability PhysicalStorageBufferAddresses", "", "",
-                                  "%physical = OpTypePointer PhysicalStorageBuffer %uint\n",
-                                  "%number_place = OpAccessChain %ulong_pointer %buffer %zero\n"
-                                  "%number = OpLoad %ulong %number_place\n"
-                                  "%address = OpConvertUToPtr %physical %number\n",
-                                  "%result = OpLoad %uint %address Aligned 4\n");
+  const std::string text =
+      module("OpCapability PhysicalStorageBufferAddresses", "", "OpDecorate %physical ArrayStride 4\n",
+             "%physical = OpTypePointer PhysicalStorageBuffer %uint\n",
+             "%number_place = OpAccessChain %ulong_pointer %buffer %zero\n"
+             "%number = OpLoad %ulong %number_place\n"
+             "%address = OpConvertUToPtr %physical %number\n",
+             "%second = OpPtrAccessChain %physical %address %one\n"
+             "%result = OpLoad %uint %second Aligned 4\n");
   for (const bool optimize : {false, true}) {
     KernelOptions options;
     options.optimize = optimize;
-    std::uint32_t target = 321;
-    std::vector<Memory> memory = {{.number = reinterpret_cast<std::uintptr_t>(&target)}};
+    std::uint32_t target[2] = {321, 654};
+    std::vector<Memory> memory = {{.number = reinterpret_cast<std::uintptr_t>(target)}};
     Kernel(assembled(text), options).run({resource(memory)});
-    CHECK(memory[0].result == 321);
+    CHECK(memory[0].result == 654);
   }
 }
 

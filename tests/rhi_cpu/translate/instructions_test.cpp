@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "rhi/shader_reflection.hpp"
 #include "tests/rhi_cpu/translate/assembly.hpp"
 #include "tests/rhi_cpu/translate/half_reference.hpp"
 #include "tests/rhi_cpu/translate/kernel_harness.hpp"
@@ -226,6 +227,8 @@ OpStore %at %length
 %r1 = OpLoad %uint %first
 )";
   const std::string text = module("", types, body, {"%r0", "%r1"}, decorations);
+  // Reflection comes before values are known.
+  CHECK(tandem::rhi::reflect(assembled(text), "nulls").specialization_constants.size() == 1);
   CHECK(stored(text, 2) == std::vector<std::uint32_t>{3, 0});
   CHECK(stored(text, 2, {.specialization = {{5, 40}}, .more_options = {}}) == std::vector<std::uint32_t>{40, 0});
   CHECK(stored(text, 2, {.specialization = {{5, 1}}, .more_options = {}}) == std::vector<std::uint32_t>{1, 1});

@@ -110,15 +110,18 @@ OpStore %again_back %r1
 %r3 = OpSelect %float %both %two %zero
 %r4 = OpSelect %float %other %two %zero
 %r5 = OpConvertSToF %float %steps
+%copy = OpCopyObject %pointer %b
+%length = OpArrayLength %uint %copy 0
+%r6 = OpConvertUToF %float %length
 )" + result(0, "%r0") + result(1, "%r1") +
-                           result(2, "%r2") + result(3, "%r3") + result(4, "%r4") + result(5, "%r5");
+                           result(2, "%r2") + result(3, "%r3") + result(4, "%r4") + result(5, "%r5") + result(6, "%r6");
   for (const bool optimize : {false, true}) {
     CAPTURE(optimize);
     KernelOptions options;
     options.optimize = optimize;
-    std::vector<float> a = {1, 2, 3, 4}, b = {10, 20, 30, 40}, results(6, -1);
+    std::vector<float> a = {1, 2, 3, 4}, b = {10, 20, 30, 40}, results(7, -1);
     Kernel(assembled(module(functions, body)), options).run({resource(a), resource(b), resource(results)});
-    CHECK(results == std::vector<float>{30, 40, 2, 2, 0, -1});
+    CHECK(results == std::vector<float>{30, 40, 2, 2, 0, -1, 4});
     CHECK(b == std::vector<float>{10, 20, 40, 40});
   }
 }
