@@ -18,10 +18,19 @@ void LaunchWatch::look(const kernel::Watch& watch) {
   static_assert(std::is_standard_layout_v<OwnWatch>, "its first member has its address");
   const LaunchWatch& owner = *reinterpret_cast<const OwnWatch&>(watch).owner;
   if (std::chrono::steady_clock::now() < owner.end_) return;
-  throw rhi::Error(rhi::ErrorCode::timeout, owner.label_,
+  owner.is_over_ = true;
+  owner.fail();
+}
+
+void LaunchWatch::check() const {
+  if (is_over_) fail();
+}
+
+void LaunchWatch::fail() const {
+  throw rhi::Error(rhi::ErrorCode::timeout, label_,
                    fmt::format("it ran for more than the {} ms of the device's time limit and was stopped; a loop may "
                                "have no end",
-                               owner.limit_.count()));
+                               limit_.count()));
 }
 
 }  // namespace tandem::cpu

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <string>
 
@@ -13,8 +14,11 @@ class LaunchWatch {
   /// @param label the pipeline's. It must outlive this.
   LaunchWatch(std::chrono::milliseconds limit, const std::string& label);
 
-  /// For kernel::Dispatch::watch. Its look throws rhi::Error(timeout) once the time is over.
+  /// For kernel::Dispatch::watch. Its look throws once the time is over.
   const kernel::Watch* watch() const noexcept { return &watch_.watch; }
+  /// To be called when the launch has ended: Embree keeps exceptions that pass through it to itself. Throws
+  /// rhi::Error(timeout) where a look has thrown.
+  void check() const;
 
  private:
   /// `watch` comes first: kernels know no more of it.
@@ -24,11 +28,13 @@ class LaunchWatch {
   };
 
   static void look(const kernel::Watch& watch);
+  [[noreturn]] void fail() const;
 
   std::chrono::milliseconds limit_;
   std::chrono::steady_clock::time_point end_;
   const std::string& label_;
   OwnWatch watch_;
+  mutable std::atomic<bool> is_over_ = false;
 };
 
 }  // namespace tandem::cpu

@@ -70,6 +70,7 @@ void trace_rays(const ShaderTable& table, const FirstRecords& first, std::span<c
         generate_rays(launch, record, push_constants.data(), {x, y, z}, size);
       });
   });
+  watch.check();
   failures.check(table, pipeline.shaders());
 }
 

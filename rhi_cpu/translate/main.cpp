@@ -74,6 +74,9 @@ int main(int argc, char** argv) {
   std::vector<std::string> assignments;
   app.add_option("--specialize", assignments, "ID=VALUE of a specialisation constant; the others keep their defaults");
   app.add_option("--entry-symbol", entry_symbol, "name of the function that the kernel exports")->capture_default_str();
+  bool robust = false, watched = false;
+  app.add_flag("--robust", robust, "keep accesses inside of what is bound, as devices with robust access do");
+  app.add_flag("--watched", watched, "let loops look at a watch, as devices with a time limit do");
   app.add_option("--embed", embed, "write C++ that holds the SPIR-V words here");
   app.add_option("--namespace", name_space, "namespace of the embedded words")->capture_default_str();
   app.add_option("--name", name, "name of the function that returns the embedded words")->capture_default_str();
@@ -84,7 +87,7 @@ int main(int argc, char** argv) {
     const std::vector<tandem::rhi::SpecializationValue> values = specialization(assignments);
     if (!kernel.empty())
       write(kernel, tandem::cpu::translate(words, std::filesystem::path(input).filename().string(),
-                                           {.specialization = values, .entry_symbol = entry_symbol})
+                                           {.specialization = values, .entry_symbol = entry_symbol, .robust = robust, .watched = watched})
                         .source);
   } catch (const std::exception& error) {
     fmt::print(stderr, "tandem-translate: {}\n", error.what());

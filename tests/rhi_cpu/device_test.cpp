@@ -210,7 +210,7 @@ TEST_CASE("A precompiled kernel needs no compiler and no cache folder") {
   CHECK(contains(error.what(), "/nonexistent"));
 }
 
-TEST_CASE("A list executes when it is submitted, once, and takes no commands afterwards") {
+TEST_CASE("A list executes whenever it is submitted, and takes no commands afterwards") {
   const rhi::DeviceHandle device = device_of<square>();
   const rhi::BufferHandle buffer = test::buffer_of(*device, std::vector<std::uint32_t>{1, 2, 3}, "values");
   const rhi::CommandListHandle list = device->create_command_list("late");
@@ -218,19 +218,20 @@ TEST_CASE("A list executes when it is submitted, once, and takes no commands aft
   CHECK(test::contents<std::uint32_t>(*device, buffer, 3) == std::vector<std::uint32_t>{1, 2, 3});
   CHECK(device->submit(list)->wait_for(std::chrono::nanoseconds(0)));
   CHECK(test::contents<std::uint32_t>(*device, buffer, 3) == std::vector<std::uint32_t>{7, 7, 7});
-  CHECK(contains(error_of([&] { device->submit(list); }).what(), "late"));
   CHECK(contains(error_of([&] { list->fill({buffer}, 8); }).what(), "late"));
 }
 
-TEST_CASE("An executed list lets go of what it named") {
+TEST_CASE("A list keeps what it names as long as it lives") {
   const rhi::DeviceHandle device = device_of<square>();
   rhi::BufferHandle buffer = test::buffer_of(*device, std::vector<std::uint32_t>{1}, "values");
   const std::weak_ptr<rhi::Buffer> watched = buffer;
-  const rhi::CommandListHandle list = device->create_command_list("list");
+  rhi::CommandListHandle list = device->create_command_list("list");
   list->fill({buffer}, 7);
   buffer = nullptr;
+  device->submit(list);
   CHECK_FALSE(watched.expired());
   device->submit(list);
+  list = nullptr;
   CHECK(watched.expired());
 }
 
@@ -301,9 +302,10 @@ TEST_CASE("An instance that names no built bottom level is an error that says wh
   CHECK(contains(error_of([&] { build(address + 1); }).what(), "instance 0"));
   CHECK(contains(error_of([&] { build(address); }).what(), "not built"));
 
-  const rhi::CommandListHandle list = device->create_command_list("build");
+  rhi::CommandListHandle list = device->create_command_list("build");
   list->build_bottom_level(bottom, triangle_desc(*device));
   device->submit(list);
+  list = nullptr;
   CHECK_NOTHROW(build(address));
   bottom = nullptr;
   CHECK(error_of([&] { build(address); }).label() == "scene");

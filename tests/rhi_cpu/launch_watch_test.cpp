@@ -82,7 +82,7 @@ TEST_CASE("endless loops of ray tracing shaders are stopped, also in the middle 
       rhi::create_filled(*device, triangle, rhi::BufferUsage::acceleration_structure_input, "vertices");
   rhi::BottomLevelDesc bottom;
   rhi::TriangleGeometry triangles;
-  triangles.vertices = {vertices};
+  triangles.vertices.buffer = vertices;
   triangles.vertex_count = 3;
   triangles.triangle_count = 1;
   triangles.flags = rhi::GeometryFlags::none;
@@ -91,7 +91,10 @@ TEST_CASE("endless loops of ray tracing shaders are stopped, also in the middle 
   const rhi::AccelerationStructureHandle level = device->create_bottom_level(bottom);
   const rhi::BufferHandle instances = rhi::create_filled(*device, std::vector{rhi::make_instance(*level)},
                                                          rhi::BufferUsage::acceleration_structure_input, "instances");
-  const rhi::TopLevelDesc top = {.instances = {instances}, .instance_count = 1, .label = "scene"};
+  rhi::TopLevelDesc top;
+  top.instances.buffer = instances;
+  top.instance_count = 1;
+  top.label = "scene";
   const rhi::AccelerationStructureHandle scene = device->create_top_level(top);
   const rhi::CommandListHandle build = device->create_command_list("build");
   build->build_bottom_level(level, bottom);
