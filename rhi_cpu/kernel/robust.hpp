@@ -21,15 +21,24 @@ constexpr bool is_inside(std::size_t size, std::size_t offset, std::size_t exten
   return size >= extent && offset <= size - extent;
 }
 
+/// The `extent` bytes at `address`, with zeros for those outside. Apart from the kernel's own code, which must stay
+/// small.
+[[gnu::noinline, gnu::cold]] inline void copy_inside(std::byte* copy, std::size_t size, std::size_t offset,
+                                                     const std::byte* address, std::size_t extent) {
+  std::memset(copy, 0, extent);
+  std::memcpy(copy, address, bytes_inside(size, offset, extent));
+}
+
 /// read(address), or the same of a copy that is zero where `address` leads out of the `size` bytes at `data`.
 template <std::size_t extent, typename Read>
 inline auto read_inside(const std::byte* data, std::size_t size, const std::byte* address, const Read& read) {
   const auto offset = static_cast<std::size_t>(address - data);
-  if (is_inside(size, offset, extent)) [[likely]]
-    return read(address);
-  std::byte copy[extent] = {};
-  std::memcpy(copy, address, bytes_inside(size, offset, extent));
-  return read(static_cast<const std::byte*>(copy));
+  std::byte copy[extent];
+  if (!is_inside(size, offset, extent)) [[unlikely]] {
+    copy_inside(copy, size, offset, address, extent);
+    address = copy;
+  }
+  return read(address);
 }
 
 /// write(address), of which nothing gets out of the `size` bytes at `data`.
@@ -38,11 +47,10 @@ inline void write_inside(const std::byte* data, std::size_t size, std::byte* add
   const auto offset = static_cast<std::size_t>(address - data);
   if (is_inside(size, offset, extent)) [[likely]]
     return write(address);
-  const std::size_t inside = bytes_inside(size, offset, extent);
-  std::byte copy[extent] = {};
-  std::memcpy(copy, address, inside);
+  std::byte copy[extent];
+  copy_inside(copy, size, offset, address, extent);
   write(static_cast<std::byte*>(copy));
-  std::memcpy(address, copy, inside);
+  std::memcpy(address, copy, bytes_inside(size, offset, extent));
 }
 
 /// Stands for memory outside during one atomic operation.

@@ -86,8 +86,9 @@ int main(int argc, char** argv) {
     if (!embed.empty()) write(embed, embedded_words(words, name_space, name));
     const std::vector<tandem::rhi::SpecializationValue> values = specialization(assignments);
     if (!kernel.empty())
-      write(kernel, tandem::cpu::translate(words, std::filesystem::path(input).filename().string(),
-                                           {.specialization = values, .entry_symbol = entry_symbol, .robust = robust, .watched = watched})
+      write(kernel, tandem::cpu::translate(
+                        words, std::filesystem::path(input).filename().string(),
+                        {.specialization = values, .entry_symbol = entry_symbol, .robust = robust, .watched = watched})
                         .source);
   } catch (const std::exception& error) {
     fmt::print(stderr, "tandem-translate: {}\n", error.what());
