@@ -188,6 +188,35 @@ KernelLibraryHandle KernelCache::add(const ContentHash& key, const fs::path& lib
   return std::get<KernelLibraryHandle>(loaded);
 }
 
+fs::path KernelCache::find_headers(const ContentHash& key, std::string_view file) {
+  fs::path headers = folder() / ("headers-" + key.hex());
+  const fs::path wanted = headers / file;
+  std::error_code error;
+  if (!fs::exists(wanted, error)) return {};
+  const auto opened = PrivateFolder::open(wanted.parent_path());
+  const auto* place = std::get_if<PrivateFolder>(&opened);
+  if (place == nullptr || !place->open_file(wanted.filename().string()).descriptor) return {};
+  fs::last_write_time(headers, fs::file_time_type::clock::now(), error);
+  return headers;
+}
+
+fs::path KernelCache::add_headers(const ContentHash& key, TemporaryFolder made) {
+  fs::path headers = folder() / ("headers-" + key.hex());
+  std::error_code error;
+  fs::rename(made.path(), headers, error);
+  if (error) return {};  // another process was faster, or the disk is full
+  made.release();
+  enforce_bound(headers);
+  return headers;
+}
+
+bool KernelCache::has_libraries() const {
+  std::error_code error;
+  for (fs::directory_iterator item(folder(), error), end; !error && item != end; item.increment(error))
+    if (item->path().extension() == ".so") return true;
+  return false;
+}
+
 fs::path KernelCache::keep_failure(TemporaryFolder folder, const ContentHash& key) {
   fs::path kept = folder_->path() / ("failed-" + key.hex());
   std::error_code error;
@@ -211,7 +240,7 @@ void KernelCache::enforce_bound(const fs::path& newest) {
     const std::string name = item->path().filename().string();
     if (name.starts_with("work-")) {
       if (now - used > abandoned_after) fs::remove_all(item->path(), gone);
-    } else if (name.starts_with("failed-") || item->path().extension() == ".so") {
+    } else if (name.starts_with("failed-") || name.starts_with("headers-") || item->path().extension() == ".so") {
       entries.push_back({.path = item->path(), .used = used, .size = size_of(item->path())});
       sum += entries.back().size;
     }

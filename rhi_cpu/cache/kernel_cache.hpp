@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "rhi/message.hpp"
@@ -67,6 +68,16 @@ class KernelCache {
   /// Moves a freshly compiled library into the cache, loads it and removes the files that have not been used for
   /// longest until the bound holds again. Throws Error(io) when that cannot be written or loaded.
   KernelLibraryHandle add(const ContentHash& key, const std::filesystem::path& library, const std::string& label);
+
+  /// The folder of headers of that key, marked as used now; "" when there is none that is this user's.
+  /// @param file that must be in it
+  std::filesystem::path find_headers(const ContentHash& key, std::string_view file);
+
+  /// Moves a work folder of headers to where find_headers() finds it; "" when it cannot be moved.
+  std::filesystem::path add_headers(const ContentHash& key, TemporaryFolder folder);
+
+  /// Whether there is a library already.
+  bool has_libraries() const;
 
   /// Moves a work folder to where it is kept for the user to read; it counts against the bound.
   std::filesystem::path keep_failure(TemporaryFolder folder, const ContentHash& key);

@@ -74,6 +74,14 @@ std::string first_error_line(const std::string& log) {
   return first;
 }
 
+void write_kernel_headers(const fs::path& folder) {
+  for (const KernelHeader& header : kernel_headers()) {
+    const fs::path path = folder / header.path;
+    fs::create_directories(path.parent_path());
+    std::ofstream(path, std::ios::binary) << header.text;
+  }
+}
+
 }  // namespace
 
 KernelCompiler find_kernel_compiler(const std::string& label) {
@@ -109,19 +117,33 @@ std::string processor_name() { return processor_property("model name"); }
 
 std::string kernel_compile_options() { return fmt::format("{}", fmt::join(options(), " ")); }
 
-std::string compile_kernel(const KernelCompiler& compiler, const fs::path& folder, bool debug_info) {
-  for (const KernelHeader& header : kernel_headers()) {
-    const fs::path path = folder / header.path;
-    fs::create_directories(path.parent_path());
-    std::ofstream(path, std::ios::binary) << header.text;
-  }
+bool precompiles_headers(const KernelCompiler& compiler) {
+  // What g++ prints, under whatever name it is called.
+  return compiler.version.find("Free Software Foundation") != std::string::npos;
+}
+
+bool precompile_kernel_headers(const KernelCompiler& compiler, const fs::path& folder) {
+  write_kernel_headers(folder);
+  std::vector<std::string> command = {compiler.path.string()};
+  for (std::string& option : options()) command.push_back(std::move(option));
+  for (const std::string& argument :
+       {std::string("-I"), folder.string(), std::string("-x"), std::string("c++-header"), std::string("-o"),
+        (folder / precompiled_kernel_header).string(), (folder / "rhi_cpu/kernel/kernel.hpp").string()})
+    command.push_back(argument);
+  const std::optional<ProcessResult> result = run_process(command);
+  return result && result->exit_code == 0;
+}
+
+std::string compile_kernel(const KernelCompiler& compiler, const fs::path& folder, const fs::path& headers,
+                           bool debug_info) {
+  if (headers.empty()) write_kernel_headers(folder);
   const fs::path library = folder / "kernel.so";
   std::vector<std::string> command = {compiler.path.string()};
   for (std::string& option : options()) command.push_back(std::move(option));
   if (debug_info) command.emplace_back("-g");
   // GLM is installed with the compiler's own headers or beside them; both are on its default path.
-  for (const std::string& argument :
-       {std::string("-I"), folder.string(), std::string("-o"), library.string(), (folder / "kernel.cpp").string()})
+  for (const std::string& argument : {std::string("-I"), (headers.empty() ? folder : headers).string(),
+                                      std::string("-o"), library.string(), (folder / "kernel.cpp").string()})
     command.push_back(argument);
 
   const std::optional<ProcessResult> result = run_process(command);

@@ -25,11 +25,22 @@ std::string processor_name();
 /// All options of a run-time compilation, the same for every shader. A part of the cache key.
 std::string kernel_compile_options();
 
-/// Compiles `folder`/kernel.cpp to `folder`/kernel.so, with the kernel headers written below `folder`. When the
-/// compiler fails, its messages are in `folder`/compiler.log.
+/// Compiles `folder`/kernel.cpp to `folder`/kernel.so. When the compiler fails, its messages are in
+/// `folder`/compiler.log.
+/// @param headers a folder of precompile_kernel_headers(); "": the kernel headers are written below `folder`
 /// @param debug_info for a source that points a debugger at the shader's own lines
 /// @return "" or the first error that the compiler reports
 std::string compile_kernel(const KernelCompiler& compiler, const std::filesystem::path& folder,
-                           bool debug_info = false);
+                           const std::filesystem::path& headers = {}, bool debug_info = false);
+
+/// Whether the compiler takes a precompiled header that lies beside the header itself, as g++ does.
+bool precompiles_headers(const KernelCompiler& compiler);
+
+/// Writes the kernel headers below `folder` and precompiles kernel.hpp for compile_kernel(): g++ reads them three times
+/// as long as it compiles a small kernel. @return whether it could
+bool precompile_kernel_headers(const KernelCompiler& compiler, const std::filesystem::path& folder);
+
+/// Where precompile_kernel_headers() puts it, below its folder.
+inline constexpr const char* precompiled_kernel_header = "rhi_cpu/kernel/kernel.hpp.gch";
 
 }  // namespace tandem::cpu

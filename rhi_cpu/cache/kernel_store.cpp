@@ -97,7 +97,14 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;
   // The translator gives line numbers when the SPIR-V has them.
   const bool has_lines = translation.source.find("\n#line ") != std::string::npos;
-  const std::string problem = compile_kernel(compiler(label), folder.path(), has_lines);
+  const std::filesystem::path precompiled = headers(label);
+  std::string problem = compile_kernel(compiler(label), folder.path(), precompiled, has_lines);
+  if (!problem.empty() && !precompiled.empty()) {
+    // They may be damaged.
+    std::error_code ignored;
+    std::filesystem::remove_all(precompiled, ignored);
+    problem = compile_kernel(compiler(label), folder.path(), {}, has_lines);
+  }
   if (!problem.empty()) {
     const std::filesystem::path kept = store.keep_failure(std::move(folder), key);
     throw rhi::Error(rhi::ErrorCode::shader_compilation, label,
@@ -112,6 +119,19 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
                  .source = "cpu kernel cache",
                  .text = fmt::format("{}: compiled in {:.0f} ms", label, duration.count())});
   return library;
+}
+
+std::filesystem::path KernelStore::headers(const std::string& label) {
+  const KernelCompiler& own_compiler = compiler(label);
+  if (!precompiles_headers(own_compiler)) return {};
+  const ContentHash key = key_of({}, {}, {}, own_compiler);
+  KernelCache& store = cache();
+  const std::lock_guard lock(headers_mutex_);
+  if (std::filesystem::path found = store.find_headers(key, precompiled_kernel_header); !found.empty()) return found;
+  if (!store.has_libraries()) return {};
+  TemporaryFolder folder = store.make_work_folder(label);
+  if (!precompile_kernel_headers(own_compiler, folder.path())) return {};
+  return store.add_headers(key, std::move(folder));
 }
 
 const KernelCompiler& KernelStore::compiler(const std::string& label) {

@@ -27,11 +27,11 @@ std::vector<std::uint32_t> values_of(rhi::Device& device) {
   const rhi::ComputePipelineHandle pipeline = compute_pipeline(device, counting_shader, "counting", {{3, 3}});
   const rhi::BufferHandle buffer =
       device.create_buffer({.size = 16, .usage = rhi::BufferUsage::storage, .label = "values"});
-  const rhi::BindGroupHandle group =
-      device.create_bind_group({.pipeline = pipeline,
-                                .set = 0,
-                                .entries = {{.binding = 0, .resource = rhi::BufferRange{buffer}, .array_element = 0}},
-                                .label = "values"});
+  rhi::BindGroupDesc bindings;
+  bindings.pipeline = pipeline;
+  bindings.entries.push_back({.binding = 0, .resource = rhi::BufferRange{buffer}});
+  bindings.label = "values";
+  const rhi::BindGroupHandle group = device.create_bind_group(bindings);
   const rhi::CommandListHandle list = device.create_command_list("counting");
   const std::vector<std::uint32_t> ones(3, 1);
   list->upload(buffer, 0, std::as_bytes(std::span(ones)));

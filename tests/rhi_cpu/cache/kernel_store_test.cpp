@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "rhi_cpu/cache/kernel_compiler.hpp"
 #include "rhi_cpu/cache/process.hpp"
 #include "rhi_cpu/device.hpp"
 #include "tests/support/device_test.hpp"
@@ -110,6 +111,33 @@ TEST_CASE("Each specialisation is a kernel of its own; a default that is spelled
   CHECK(messages.count(Severity::info, "compiled") == 2);
 }
 
+TEST_CASE("Headers are precompiled for the second kernel of a cache, and made anew when they are damaged") {
+  const ScratchFolder cache;
+  Messages messages;
+  const rhi::DeviceHandle device = device_with(cache.path(), messages);
+  if (!precompiles_headers(find_kernel_compiler("glow"))) return;
+  const auto run = [&](std::uint32_t scale) {
+    return run_glow(*device, test::compute_pipeline(*device, glow, "glow", {{.id = 7, .value = scale}}));
+  };
+  const auto headers = [&] {
+    std::vector<fs::path> found;
+    for (const fs::directory_entry& item : fs::directory_iterator(cache.path()))
+      if (item.path().filename().string().starts_with("headers-")) found.push_back(item.path());
+    return found;
+  };
+  CHECK(run(4) == glow_values(4));
+  CHECK(headers().empty());
+  CHECK(run(5) == glow_values(5));
+  REQUIRE(headers().size() == 1);
+  const fs::path header = headers()[0] / precompiled_kernel_header;
+  const auto size = fs::file_size(header);
+  fs::resize_file(header, size / 2);
+  CHECK(run(6) == glow_values(6));
+  CHECK(run(7) == glow_values(7));
+  REQUIRE(headers().size() == 1);
+  CHECK(fs::file_size(headers()[0] / precompiled_kernel_header) > size / 2);
+}
+
 TEST_CASE("A damaged kernel in the cache is compiled anew") {
   const ScratchFolder cache;
   Messages messages;
@@ -132,7 +160,7 @@ TEST_CASE("Another compiler, another kernel") {
   const EnvironmentVariable chosen("TANDEM_CXX", alias.string());
   test::compute_pipeline(*device_with(cache.path(), messages), glow, "glow");
   CHECK(messages.count(Severity::info, "glow: compiled") == 2);
-  CHECK(file_count(cache.path()) == 2);
+  CHECK(file_count(cache.path()) == (precompiles_headers(find_kernel_compiler("test")) ? 3 : 2));
 }
 
 TEST_CASE("Without a compiler a shader that needs one is an error that names it") {
