@@ -87,6 +87,7 @@ struct DeviceInfo {
   Capabilities capabilities;
   Limits limits;
   std::array<FormatSupport, texture_format_count> formats = {};  ///< by TextureFormat
+  std::vector<std::uint32_t> spirv_capabilities = {};            ///< that shaders may declare, ascending
 };
 
 struct DeviceDesc {

@@ -2,19 +2,10 @@
 
 #include <unordered_set>
 
-#include <spirv_cross/spirv.hpp>
+#include "rhi/spirv_words.hpp"
 
 namespace tandem::rhi {
 namespace {
-
-constexpr std::size_t header_words = 5;
-
-/// Calls visit(operation, instruction) for each instruction.
-template <typename Word, typename Visit>
-void for_each_instruction(std::span<Word> words, const Visit& visit) {
-  for (std::size_t i = header_words; i < words.size(); i += words[i] >> 16)
-    visit(static_cast<spv::Op>(words[i] & 0xffff), words.subspan(i, words[i] >> 16));
-}
 
 /// Positions of the operands of an instruction that may be pointers as values: first, step, end.
 struct Operands {
@@ -45,7 +36,8 @@ Operands pointer_values(spv::Op op, std::size_t length) {
 std::vector<std::uint32_t> without_composite_nulls(std::span<const std::uint32_t> spirv) {
   std::vector<std::uint32_t> result(spirv.begin(), spirv.end());
   std::unordered_set<std::uint32_t> composites;
-  for_each_instruction(std::span(result), [&](spv::Op op, std::span<std::uint32_t> i) {
+  for_each_instruction(std::span(result), [&](std::span<std::uint32_t> i) {
+    const spv::Op op = operation_of(i);
     if (op == spv::OpTypeArray || op == spv::OpTypeStruct) composites.insert(i[1]);
     if (op == spv::OpConstantNull && composites.contains(i[1])) i[0] = 3u << 16 | spv::OpUndef;
   });
@@ -54,7 +46,8 @@ std::vector<std::uint32_t> without_composite_nulls(std::span<const std::uint32_t
 
 std::vector<std::uint32_t> variables_used_as_values(std::span<const std::uint32_t> spirv) {
   std::unordered_set<std::uint32_t> variables, used;
-  for_each_instruction(spirv, [&](spv::Op op, std::span<const std::uint32_t> i) {
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    const spv::Op op = operation_of(i);
     if (op == spv::OpVariable && i[3] != spv::StorageClassFunction) variables.insert(i[2]);
     const Operands operands = pointer_values(op, i.size());
     for (std::size_t k = operands.first; k < operands.end; k += operands.step)

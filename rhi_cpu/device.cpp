@@ -238,7 +238,8 @@ rhi::DeviceInfo device_info(std::string_view name) {
                            .shader_float64 = true,
                            .timestamps = true},
           .limits = limits(),
-          .formats = format_support()};
+          .formats = format_support(),
+          .spirv_capabilities = supported_capabilities()};
 }
 
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled) {

@@ -1,11 +1,13 @@
 #include "rhi_vulkan/shader_capabilities.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
 #include <spirv/unified1/spirv.hpp11>
 
 #include "rhi/error.hpp"
+#include "rhi/spirv_names.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -17,7 +19,6 @@ constexpr std::size_t header_words = 5;
 /// A capability, and whether a device lets shaders use it. From "Runtime Environment for SPIR-V", Vulkan appendix A.
 struct Rule {
   Capability capability;
-  const char* name;
   bool (*allowed)(const PhysicalDevice& device);
 };
 
@@ -63,147 +64,123 @@ using V12 = vk::PhysicalDeviceVulkan12Features;
 using Subgroup = vk::SubgroupFeatureFlagBits;
 
 constexpr std::array rules = {
-    Rule{Capability::Matrix, "Matrix", always},
-    Rule{Capability::Shader, "Shader", always},
-    Rule{Capability::Sampled1D, "Sampled1D", always},
-    Rule{Capability::Image1D, "Image1D", always},
-    Rule{Capability::SampledBuffer, "SampledBuffer", always},
-    Rule{Capability::ImageBuffer, "ImageBuffer", always},
-    Rule{Capability::ImageQuery, "ImageQuery", always},
-    Rule{Capability::Int8, "Int8", vulkan12<&V12::shaderInt8>},
-    Rule{Capability::Int16, "Int16", core<&Core::shaderInt16>},
-    Rule{Capability::Int64, "Int64", core<&Core::shaderInt64>},
-    Rule{Capability::Float16, "Float16", vulkan12<&V12::shaderFloat16>},
-    Rule{Capability::Float64, "Float64", core<&Core::shaderFloat64>},
-    Rule{Capability::Int64Atomics, "Int64Atomics", vulkan12<&V12::shaderBufferInt64Atomics>},
-    Rule{Capability::StorageBuffer8BitAccess, "StorageBuffer8BitAccess", vulkan12<&V12::storageBuffer8BitAccess>},
-    Rule{Capability::UniformAndStorageBuffer8BitAccess, "UniformAndStorageBuffer8BitAccess",
-         vulkan12<&V12::uniformAndStorageBuffer8BitAccess>},
-    Rule{Capability::StorageBuffer16BitAccess, "StorageBuffer16BitAccess", vulkan11<&V11::storageBuffer16BitAccess>},
-    Rule{Capability::UniformAndStorageBuffer16BitAccess, "UniformAndStorageBuffer16BitAccess",
-         vulkan11<&V11::uniformAndStorageBuffer16BitAccess>},
-    Rule{Capability::StorageBufferArrayDynamicIndexing, "StorageBufferArrayDynamicIndexing",
-         core<&Core::shaderStorageBufferArrayDynamicIndexing>},
-    Rule{Capability::UniformBufferArrayDynamicIndexing, "UniformBufferArrayDynamicIndexing",
-         core<&Core::shaderUniformBufferArrayDynamicIndexing>},
-    Rule{Capability::StorageImageArrayDynamicIndexing, "StorageImageArrayDynamicIndexing",
-         core<&Core::shaderStorageImageArrayDynamicIndexing>},
-    Rule{Capability::StorageImageArrayNonUniformIndexing, "StorageImageArrayNonUniformIndexing",
-         vulkan12<&V12::shaderStorageImageArrayNonUniformIndexing>},
-    Rule{Capability::StorageImageExtendedFormats, "StorageImageExtendedFormats",
-         core<&Core::shaderStorageImageExtendedFormats>},
-    Rule{Capability::StorageImageReadWithoutFormat, "StorageImageReadWithoutFormat",
-         core<&Core::shaderStorageImageReadWithoutFormat>},
-    Rule{Capability::StorageImageWriteWithoutFormat, "StorageImageWriteWithoutFormat",
-         core<&Core::shaderStorageImageWriteWithoutFormat>},
-    Rule{Capability::ShaderNonUniform, "ShaderNonUniform", always},
-    Rule{Capability::StorageBufferArrayNonUniformIndexing, "StorageBufferArrayNonUniformIndexing",
-         vulkan12<&V12::shaderStorageBufferArrayNonUniformIndexing>},
-    Rule{Capability::UniformBufferArrayNonUniformIndexing, "UniformBufferArrayNonUniformIndexing",
-         vulkan12<&V12::shaderUniformBufferArrayNonUniformIndexing>},
-    Rule{Capability::PhysicalStorageBufferAddresses, "PhysicalStorageBufferAddresses",
-         vulkan12<&V12::bufferDeviceAddress>},
-    Rule{Capability::VulkanMemoryModel, "VulkanMemoryModel", vulkan12<&V12::vulkanMemoryModel>},
-    Rule{Capability::VulkanMemoryModelDeviceScope, "VulkanMemoryModelDeviceScope",
-         vulkan12<&V12::vulkanMemoryModelDeviceScope>},
-    Rule{Capability::GroupNonUniform, "GroupNonUniform", subgroup<Subgroup::eBasic>},
-    Rule{Capability::GroupNonUniformVote, "GroupNonUniformVote", subgroup<Subgroup::eVote>},
-    Rule{Capability::GroupNonUniformArithmetic, "GroupNonUniformArithmetic", subgroup<Subgroup::eArithmetic>},
-    Rule{Capability::GroupNonUniformBallot, "GroupNonUniformBallot", subgroup<Subgroup::eBallot>},
-    Rule{Capability::GroupNonUniformShuffle, "GroupNonUniformShuffle", subgroup<Subgroup::eShuffle>},
-    Rule{Capability::GroupNonUniformShuffleRelative, "GroupNonUniformShuffleRelative",
-         subgroup<Subgroup::eShuffleRelative>},
-    Rule{Capability::GroupNonUniformClustered, "GroupNonUniformClustered", subgroup<Subgroup::eClustered>},
-    Rule{Capability::GroupNonUniformQuad, "GroupNonUniformQuad", subgroup<Subgroup::eQuad>},
-    Rule{Capability::RayQueryKHR, "RayQueryKHR",
-         extension_feature<&E::ray_query, &vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery>},
-    Rule{Capability::RayTraversalPrimitiveCullingKHR, "RayTraversalPrimitiveCullingKHR", primitive_culling},
-    Rule{Capability::RayTracingKHR, "RayTracingKHR",
+    Rule{Capability::Matrix, always},
+    Rule{Capability::Shader, always},
+    Rule{Capability::Sampled1D, always},
+    Rule{Capability::Image1D, always},
+    Rule{Capability::SampledBuffer, always},
+    Rule{Capability::ImageBuffer, always},
+    Rule{Capability::ImageQuery, always},
+    Rule{Capability::Int8, vulkan12<&V12::shaderInt8>},
+    Rule{Capability::Int16, core<&Core::shaderInt16>},
+    Rule{Capability::Int64, core<&Core::shaderInt64>},
+    Rule{Capability::Float16, vulkan12<&V12::shaderFloat16>},
+    Rule{Capability::Float64, core<&Core::shaderFloat64>},
+    Rule{Capability::Int64Atomics, vulkan12<&V12::shaderBufferInt64Atomics>},
+    Rule{Capability::StorageBuffer8BitAccess, vulkan12<&V12::storageBuffer8BitAccess>},
+    Rule{Capability::UniformAndStorageBuffer8BitAccess, vulkan12<&V12::uniformAndStorageBuffer8BitAccess>},
+    Rule{Capability::StorageBuffer16BitAccess, vulkan11<&V11::storageBuffer16BitAccess>},
+    Rule{Capability::UniformAndStorageBuffer16BitAccess, vulkan11<&V11::uniformAndStorageBuffer16BitAccess>},
+    Rule{Capability::StorageBufferArrayDynamicIndexing, core<&Core::shaderStorageBufferArrayDynamicIndexing>},
+    Rule{Capability::UniformBufferArrayDynamicIndexing, core<&Core::shaderUniformBufferArrayDynamicIndexing>},
+    Rule{Capability::StorageImageArrayDynamicIndexing, core<&Core::shaderStorageImageArrayDynamicIndexing>},
+    Rule{Capability::StorageImageArrayNonUniformIndexing, vulkan12<&V12::shaderStorageImageArrayNonUniformIndexing>},
+    Rule{Capability::StorageImageExtendedFormats, core<&Core::shaderStorageImageExtendedFormats>},
+    Rule{Capability::StorageImageReadWithoutFormat, core<&Core::shaderStorageImageReadWithoutFormat>},
+    Rule{Capability::StorageImageWriteWithoutFormat, core<&Core::shaderStorageImageWriteWithoutFormat>},
+    Rule{Capability::ShaderNonUniform, always},
+    Rule{Capability::StorageBufferArrayNonUniformIndexing, vulkan12<&V12::shaderStorageBufferArrayNonUniformIndexing>},
+    Rule{Capability::UniformBufferArrayNonUniformIndexing, vulkan12<&V12::shaderUniformBufferArrayNonUniformIndexing>},
+    Rule{Capability::PhysicalStorageBufferAddresses, vulkan12<&V12::bufferDeviceAddress>},
+    Rule{Capability::VulkanMemoryModel, vulkan12<&V12::vulkanMemoryModel>},
+    Rule{Capability::VulkanMemoryModelDeviceScope, vulkan12<&V12::vulkanMemoryModelDeviceScope>},
+    Rule{Capability::GroupNonUniform, subgroup<Subgroup::eBasic>},
+    Rule{Capability::GroupNonUniformVote, subgroup<Subgroup::eVote>},
+    Rule{Capability::GroupNonUniformArithmetic, subgroup<Subgroup::eArithmetic>},
+    Rule{Capability::GroupNonUniformBallot, subgroup<Subgroup::eBallot>},
+    Rule{Capability::GroupNonUniformShuffle, subgroup<Subgroup::eShuffle>},
+    Rule{Capability::GroupNonUniformShuffleRelative, subgroup<Subgroup::eShuffleRelative>},
+    Rule{Capability::GroupNonUniformClustered, subgroup<Subgroup::eClustered>},
+    Rule{Capability::GroupNonUniformQuad, subgroup<Subgroup::eQuad>},
+    Rule{Capability::RayQueryKHR, extension_feature<&E::ray_query, &vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery>},
+    Rule{Capability::RayTraversalPrimitiveCullingKHR, primitive_culling},
+    Rule{Capability::RayTracingKHR,
          extension_feature<&E::ray_tracing_pipeline,
                            &vk::PhysicalDeviceRayTracingPipelineFeaturesKHR::rayTracingPipeline>},
-    Rule{Capability::RayCullMaskKHR, "RayCullMaskKHR",
+    Rule{Capability::RayCullMaskKHR,
          extension_feature<&E::ray_tracing_maintenance1,
                            &vk::PhysicalDeviceRayTracingMaintenance1FeaturesKHR::rayTracingMaintenance1>},
-    Rule{Capability::SampledCubeArray, "SampledCubeArray", core<&Core::imageCubeArray>},
-    Rule{Capability::ImageCubeArray, "ImageCubeArray", core<&Core::imageCubeArray>},
-    Rule{Capability::ImageGatherExtended, "ImageGatherExtended", core<&Core::shaderImageGatherExtended>},
-    Rule{Capability::MinLod, "MinLod", core<&Core::shaderResourceMinLod>},
-    Rule{Capability::SampledImageArrayDynamicIndexing, "SampledImageArrayDynamicIndexing",
-         core<&Core::shaderSampledImageArrayDynamicIndexing>},
-    Rule{Capability::RuntimeDescriptorArray, "RuntimeDescriptorArray", vulkan12<&V12::runtimeDescriptorArray>},
-    Rule{Capability::SampledImageArrayNonUniformIndexing, "SampledImageArrayNonUniformIndexing",
-         vulkan12<&V12::shaderSampledImageArrayNonUniformIndexing>},
-    Rule{Capability::UniformTexelBufferArrayDynamicIndexing, "UniformTexelBufferArrayDynamicIndexing",
+    Rule{Capability::SampledCubeArray, core<&Core::imageCubeArray>},
+    Rule{Capability::ImageCubeArray, core<&Core::imageCubeArray>},
+    Rule{Capability::ImageGatherExtended, core<&Core::shaderImageGatherExtended>},
+    Rule{Capability::MinLod, core<&Core::shaderResourceMinLod>},
+    Rule{Capability::SampledImageArrayDynamicIndexing, core<&Core::shaderSampledImageArrayDynamicIndexing>},
+    Rule{Capability::RuntimeDescriptorArray, vulkan12<&V12::runtimeDescriptorArray>},
+    Rule{Capability::SampledImageArrayNonUniformIndexing, vulkan12<&V12::shaderSampledImageArrayNonUniformIndexing>},
+    Rule{Capability::UniformTexelBufferArrayDynamicIndexing,
          vulkan12<&V12::shaderUniformTexelBufferArrayDynamicIndexing>},
-    Rule{Capability::StorageTexelBufferArrayDynamicIndexing, "StorageTexelBufferArrayDynamicIndexing",
+    Rule{Capability::StorageTexelBufferArrayDynamicIndexing,
          vulkan12<&V12::shaderStorageTexelBufferArrayDynamicIndexing>},
-    Rule{Capability::UniformTexelBufferArrayNonUniformIndexing, "UniformTexelBufferArrayNonUniformIndexing",
+    Rule{Capability::UniformTexelBufferArrayNonUniformIndexing,
          vulkan12<&V12::shaderUniformTexelBufferArrayNonUniformIndexing>},
-    Rule{Capability::StorageTexelBufferArrayNonUniformIndexing, "StorageTexelBufferArrayNonUniformIndexing",
+    Rule{Capability::StorageTexelBufferArrayNonUniformIndexing,
          vulkan12<&V12::shaderStorageTexelBufferArrayNonUniformIndexing>},
-    Rule{Capability::StoragePushConstant8, "StoragePushConstant8", vulkan12<&V12::storagePushConstant8>},
-    Rule{Capability::StoragePushConstant16, "StoragePushConstant16", vulkan11<&V11::storagePushConstant16>},
-    Rule{Capability::VariablePointers, "VariablePointers", vulkan11<&V11::variablePointers>},
-    Rule{Capability::VariablePointersStorageBuffer, "VariablePointersStorageBuffer",
-         vulkan11<&V11::variablePointersStorageBuffer>},
-    Rule{Capability::DenormPreserve, "DenormPreserve",
-         float_control<&P12::shaderDenormPreserveFloat16, &P12::shaderDenormPreserveFloat32,
-                       &P12::shaderDenormPreserveFloat64>},
-    Rule{Capability::DenormFlushToZero, "DenormFlushToZero",
+    Rule{Capability::StoragePushConstant8, vulkan12<&V12::storagePushConstant8>},
+    Rule{Capability::StoragePushConstant16, vulkan11<&V11::storagePushConstant16>},
+    Rule{Capability::VariablePointers, vulkan11<&V11::variablePointers>},
+    Rule{Capability::VariablePointersStorageBuffer, vulkan11<&V11::variablePointersStorageBuffer>},
+    Rule{Capability::DenormPreserve, float_control<&P12::shaderDenormPreserveFloat16, &P12::shaderDenormPreserveFloat32,
+                                                   &P12::shaderDenormPreserveFloat64>},
+    Rule{Capability::DenormFlushToZero,
          float_control<&P12::shaderDenormFlushToZeroFloat16, &P12::shaderDenormFlushToZeroFloat32,
                        &P12::shaderDenormFlushToZeroFloat64>},
-    Rule{Capability::SignedZeroInfNanPreserve, "SignedZeroInfNanPreserve",
+    Rule{Capability::SignedZeroInfNanPreserve,
          float_control<&P12::shaderSignedZeroInfNanPreserveFloat16, &P12::shaderSignedZeroInfNanPreserveFloat32,
                        &P12::shaderSignedZeroInfNanPreserveFloat64>},
-    Rule{Capability::RoundingModeRTE, "RoundingModeRTE",
+    Rule{Capability::RoundingModeRTE,
          float_control<&P12::shaderRoundingModeRTEFloat16, &P12::shaderRoundingModeRTEFloat32,
                        &P12::shaderRoundingModeRTEFloat64>},
-    Rule{Capability::RoundingModeRTZ, "RoundingModeRTZ",
+    Rule{Capability::RoundingModeRTZ,
          float_control<&P12::shaderRoundingModeRTZFloat16, &P12::shaderRoundingModeRTZFloat32,
                        &P12::shaderRoundingModeRTZFloat64>},
-    Rule{Capability::ShaderClockKHR, "ShaderClockKHR",
+    Rule{Capability::ShaderClockKHR,
          extension_feature<&E::shader_clock, &vk::PhysicalDeviceShaderClockFeaturesKHR::shaderSubgroupClock,
                            &vk::PhysicalDeviceShaderClockFeaturesKHR::shaderDeviceClock>},
-    Rule{Capability::DotProduct, "DotProduct", vulkan13<&V13::shaderIntegerDotProduct>},
-    Rule{Capability::DotProductInputAll, "DotProductInputAll", vulkan13<&V13::shaderIntegerDotProduct>},
-    Rule{Capability::DotProductInput4x8Bit, "DotProductInput4x8Bit", vulkan13<&V13::shaderIntegerDotProduct>},
-    Rule{Capability::DotProductInput4x8BitPacked, "DotProductInput4x8BitPacked",
-         vulkan13<&V13::shaderIntegerDotProduct>},
-    Rule{Capability::AtomicFloat32AddEXT, "AtomicFloat32AddEXT",
+    Rule{Capability::DotProduct, vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::DotProductInputAll, vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::DotProductInput4x8Bit, vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::DotProductInput4x8BitPacked, vulkan13<&V13::shaderIntegerDotProduct>},
+    Rule{Capability::AtomicFloat32AddEXT,
          extension_feature<&E::atomic_float, &AtomicFloat::shaderBufferFloat32AtomicAdd,
                            &AtomicFloat::shaderSharedFloat32AtomicAdd, &AtomicFloat::shaderImageFloat32AtomicAdd>},
-    Rule{Capability::AtomicFloat64AddEXT, "AtomicFloat64AddEXT",
+    Rule{Capability::AtomicFloat64AddEXT,
          extension_feature<&E::atomic_float, &AtomicFloat::shaderBufferFloat64AtomicAdd,
                            &AtomicFloat::shaderSharedFloat64AtomicAdd>},
-    Rule{Capability::AtomicFloat16AddEXT, "AtomicFloat16AddEXT",
+    Rule{Capability::AtomicFloat16AddEXT,
          extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicAdd>},
-    Rule{Capability::AtomicFloat16MinMaxEXT, "AtomicFloat16MinMaxEXT",
+    Rule{Capability::AtomicFloat16MinMaxEXT,
          extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicMinMax>},
-    Rule{Capability::AtomicFloat32MinMaxEXT, "AtomicFloat32MinMaxEXT",
+    Rule{Capability::AtomicFloat32MinMaxEXT,
          extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat32AtomicMinMax,
                            &AtomicFloat2::shaderImageFloat32AtomicMinMax>},
-    Rule{Capability::AtomicFloat64MinMaxEXT, "AtomicFloat64MinMaxEXT",
+    Rule{Capability::AtomicFloat64MinMaxEXT,
          extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat64AtomicMinMax>},
-    Rule{Capability::Int64ImageEXT, "Int64ImageEXT",
+    Rule{Capability::Int64ImageEXT,
          extension_feature<&E::image_atomic_int64,
                            &vk::PhysicalDeviceShaderImageAtomicInt64FeaturesEXT::shaderImageInt64Atomics>},
-    Rule{Capability::WorkgroupMemoryExplicitLayoutKHR, "WorkgroupMemoryExplicitLayoutKHR",
+    Rule{Capability::WorkgroupMemoryExplicitLayoutKHR,
          extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout>},
-    Rule{Capability::WorkgroupMemoryExplicitLayout8BitAccessKHR, "WorkgroupMemoryExplicitLayout8BitAccessKHR",
+    Rule{Capability::WorkgroupMemoryExplicitLayout8BitAccessKHR,
          extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout8BitAccess>},
-    Rule{Capability::WorkgroupMemoryExplicitLayout16BitAccessKHR, "WorkgroupMemoryExplicitLayout16BitAccessKHR",
+    Rule{Capability::WorkgroupMemoryExplicitLayout16BitAccessKHR,
          extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout16BitAccess>},
 };
 
 /// "the SPIR-V capability X", for one that the device does not offer; empty for one that it does.
 std::string missing(Capability capability, const PhysicalDevice& device) {
-  std::string name = std::to_string(static_cast<std::uint32_t>(capability));
-  for (const Rule& rule : rules) {
-    if (rule.capability != capability) continue;
-    if (rule.allowed(device)) return {};
-    name = rule.name;
-  }
-  return "the SPIR-V capability " + name;
+  for (const Rule& rule : rules)
+    if (rule.capability == capability && rule.allowed(device)) return {};
+  return "the SPIR-V capability " + rhi::capability_name(static_cast<std::uint32_t>(capability));
 }
 
 std::string version_text(std::uint32_t version) {
@@ -211,6 +188,21 @@ std::string version_text(std::uint32_t version) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> known_capabilities() {
+  std::vector<std::uint32_t> numbers;
+  for (const Rule& rule : rules) numbers.push_back(static_cast<std::uint32_t>(rule.capability));
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
+std::vector<std::uint32_t> offered_capabilities(const PhysicalDevice& device) {
+  std::vector<std::uint32_t> numbers;
+  for (const Rule& rule : rules)
+    if (rule.allowed(device)) numbers.push_back(static_cast<std::uint32_t>(rule.capability));
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
 
 std::vector<std::string> missing_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device) {
   std::vector<std::string> all;

@@ -10,6 +10,12 @@
 
 namespace tandem::vulkan {
 
+/// SPIR-V's numbers of the capabilities that some Vulkan device may offer, ascending.
+std::vector<std::uint32_t> known_capabilities();
+
+/// Those that this one offers.
+std::vector<std::uint32_t> offered_capabilities(const PhysicalDevice& device);
+
 /// What the module needs and no feature that the device was created with allows, "the SPIR-V capability Float16" for
 /// example: its version, and the capabilities that it declares.
 std::vector<std::string> missing_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device);

@@ -1,4 +1,5 @@
 #include "rhi_cpu/translate/constant_folding.hpp"
+#include "rhi/spirv_words.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -14,7 +15,6 @@ namespace {
 using Words = std::vector<std::uint32_t>;
 using Instruction = std::span<const std::uint32_t>;
 
-constexpr std::size_t header_words = 5;
 constexpr std::size_t bound = 3;  ///< word of the header
 
 struct NumberType {
@@ -38,10 +38,10 @@ struct Constant {
 class Folder {
  public:
   explicit Folder(Instruction module)
-      : module_(module), result_(module.begin(), module.begin() + header_words), next_id_(module[bound]) {}
+      : module_(module), result_(module.begin(), module.begin() + rhi::spirv_header_words), next_id_(module[bound]) {}
 
   Words folded() {
-    for (std::size_t k = header_words; k < module_.size(); k += module_[k] >> 16)
+    for (std::size_t k = rhi::spirv_header_words; k < module_.size(); k += module_[k] >> 16)
       fold(module_.subspan(k, module_[k] >> 16));
     result_[bound] = next_id_;
     return std::move(result_);

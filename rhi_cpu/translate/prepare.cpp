@@ -8,24 +8,18 @@
 #include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi/spirv_names.hpp"
 #include "rhi/spirv_validation.hpp"
+#include "rhi/spirv_words.hpp"
 #include "rhi_cpu/translate/constant_folding.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 
 namespace tandem::cpu {
 namespace {
 
-constexpr std::size_t header_words = 5;
-
-/// Calls visit(instruction) for each instruction of the module.
-template <typename Word, typename Visit>
-void for_each_instruction(std::span<Word> spirv, const Visit& visit) {
-  for (std::size_t i = header_words; i < spirv.size(); i += spirv[i] >> 16) visit(spirv.subspan(i, spirv[i] >> 16));
-}
-
-spv::Op operation(std::span<const std::uint32_t> instruction) { return static_cast<spv::Op>(instruction[0] & 0xffff); }
+using rhi::for_each_instruction;
+using rhi::operation_of;
 
 [[noreturn]] void fail(const std::string& label, const std::string& why) {
   throw rhi::Error(rhi::ErrorCode::invalid_argument, label, why);
@@ -34,7 +28,7 @@ spv::Op operation(std::span<const std::uint32_t> instruction) { return static_ca
 bool has_specialization(std::span<const std::uint32_t> spirv) {
   bool found = false;
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    const spv::Op op = operation(i);
+    const spv::Op op = operation_of(i);
     found |= op >= spv::OpSpecConstantTrue && op <= spv::OpSpecConstantOp;
   });
   return found;
@@ -61,7 +55,7 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, cons
                                       std::span<const rhi::SpecializationValue> values) {
   std::unordered_set<std::uint32_t> declared;
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    if (operation(i) == spv::OpDecorate && i[2] == spv::DecorationSpecId) declared.insert(i[3]);
+    if (operation_of(i) == spv::OpDecorate && i[2] == spv::DecorationSpecId) declared.insert(i[3]);
   });
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> words;
   for (const rhi::SpecializationValue& value : values) {
@@ -80,7 +74,8 @@ std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, cons
 /// Folding leaves what it cannot compute.
 void check_folded(std::span<const std::uint32_t> spirv, const std::string& label) {
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    if (operation(i) == spv::OpSpecConstantOp) refuse(label, "OpSpecConstantOp with " + folded_operation_name(i));
+    if (operation_of(i) == spv::OpSpecConstantOp)
+      refuse(label, "OpSpecConstantOp with " + rhi::folded_operation_name(i));
   });
 }
 
@@ -94,15 +89,15 @@ std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const s
   std::vector<std::uint32_t> words = specialize(spirv, label, specialization);
   check_folded(words, label);
   for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {
-    if (operation(i) == spv::OpUndef) i[0] = 3u << 16 | spv::OpConstantNull;
+    if (operation_of(i) == spv::OpUndef) i[0] = 3u << 16 | spv::OpConstantNull;
   });
   return words;
 }
 
 std::vector<std::uint32_t> with_marked_loops(std::span<const std::uint32_t> spirv) {
-  std::vector<std::uint32_t> result(spirv.begin(), spirv.begin() + header_words);
+  std::vector<std::uint32_t> result(spirv.begin(), spirv.begin() + rhi::spirv_header_words);
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    if (operation(i) == spv::OpLoopMerge) result.push_back(1u << 16 | loop_mark);
+    if (operation_of(i) == spv::OpLoopMerge) result.push_back(1u << 16 | loop_mark);
     result.insert(result.end(), i.begin(), i.end());
   });
   return result;

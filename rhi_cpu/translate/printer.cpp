@@ -1,4 +1,5 @@
 #include "rhi_cpu/translate/printer.hpp"
+#include "rhi/spirv_names.hpp"
 
 #include <algorithm>
 #include <unordered_set>
@@ -7,7 +8,6 @@
 
 #include "rhi_cpu/translate/identifiers.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -341,7 +341,7 @@ std::string Printer::variable_decl(const SPIRVariable& variable) {
 std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
   if (is_traced()) {
     const auto type = built_in_types_.find(builtin);
-    if (type == built_in_types_.end()) fail("built-in " + built_in_name(builtin));
+    if (type == built_in_types_.end()) fail("built-in " + rhi::built_in_name(builtin));
     return fmt::format("{}({})", type_name(type->second), traced_built_in(builtin));
   }
   switch (builtin) {
@@ -356,7 +356,7 @@ std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
     case spv::BuiltInLocalInvocationIndex:
       return "built_in_LocalInvocationIndex";
     default:
-      fail("built-in " + built_in_name(builtin));
+      fail("built-in " + rhi::built_in_name(builtin));
   }
 }
 

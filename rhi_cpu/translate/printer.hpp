@@ -18,7 +18,7 @@
 #include "rhi_cpu/translate/operations.hpp"
 #include "rhi_cpu/translate/scalar_types.hpp"
 #include "rhi_cpu/translate/storage_classes.hpp"
-#include "rhi_cpu/translate/translate.hpp"
+#include "rhi_cpu/translate/translate_options.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"
 
 namespace tandem::cpu {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -19,7 +19,7 @@ constexpr std::size_t first_own_operand = 2;
 void Printer::print_extended(const Instruction& i) {
   if (get<SPIRExtension>(i.operand(0)).ext != SPIRExtension::GLSL) return;  // NonSemantic
   const ExtendedInstruction* extended = find_extended(i.operand(1));
-  if (extended == nullptr) fail("extended instruction " + extended_instruction_name(i.operand(1)));
+  if (extended == nullptr) fail("extended instruction " + rhi::extended_instruction_name(i.operand(1)));
   switch (extended->shape) {
     case ExtendedShape::bit_search:
       if (type_of(i.operand(first_own_operand)).width != 32) fail("a bit search on other than 32 bits");

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/translate/kernel_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -12,7 +12,7 @@ using spirv_cross::SPIRVariable;
 
 std::string Printer::texel_format(const Type& type) const {
   const char* name = texel_format_name(type.image.format);
-  if (name == nullptr) fail("image format " + image_format_name(type.image.format));
+  if (name == nullptr) fail("image format " + rhi::image_format_name(type.image.format));
   return fmt::format("k::TexelFormat::{}", name);
 }
 
@@ -30,7 +30,7 @@ const char* Printer::image_shape(const Type& type) const {
     case spv::DimCube:
       return arrayed ? "k::Shape::cube_array" : "k::Shape::cube";
     default:
-      fail("an image of dimension " + dimension_name(type.image.dim));
+      fail("an image of dimension " + rhi::dimension_name(type.image.dim));
   }
 }
 
@@ -70,7 +70,7 @@ void Printer::refuse_sample(const Instruction& i, std::size_t mask) const {
   // What a mask of image operands can say of a storage image besides is about memory or about signs, which the types
   // have.
   if (i.operand_count() > mask && (i.operand(mask) & spv::ImageOperandsSampleMask) != 0)
-    fail(instruction_name(i.op(), i.words()) + " of a sample");
+    fail(rhi::instruction_name(i.op(), i.words()) + " of a sample");
 }
 
 void Printer::print_image_read(const Instruction& i) {
@@ -106,7 +106,7 @@ void Printer::print_texel_pointer(const Instruction& i) {
   const spv::ImageFormat format = image.image.format;
   const bool is_wide = format == spv::ImageFormatR64ui || format == spv::ImageFormatR64i;
   if (!is_wide && format != spv::ImageFormatR32ui && format != spv::ImageFormatR32i && format != spv::ImageFormatR32f)
-    fail("OpImageTexelPointer into an image of format " + image_format_name(format));
+    fail("OpImageTexelPointer into an image of format " + rhi::image_format_name(format));
   // It lives until the end of the expression that has the atomic operation.
   const std::string pointer = fmt::format("k::texel_pointer({}, {}, {}, k::NoTexel{{}})",
                                           descriptor_value(i.operand(0)), value(i.operand(1)), is_wide ? 8 : 4);

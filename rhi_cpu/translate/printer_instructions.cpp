@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/translate/prepare.hpp"
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -103,7 +103,7 @@ void Printer::emit_instruction(const spirv_cross::Instruction& instruction) {
   if (i.op() == loop_mark) return print_look();
   if (const Operation* operation = find_operation(i.op())) return print_operation(i, *operation);
   if (const PrintFunction print = by_hand(i.op())) return (this->*print)(i);
-  fail(instruction_name(i.op(), i.words()));
+  fail(rhi::instruction_name(i.op(), i.words()));
 }
 
 void Printer::print_line(const Instruction& i) { emit_line_directive(i.operand(0), i.operand(1)); }

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -74,7 +74,7 @@ void Printer::print_pointer_access_chain(const Instruction& i) {
 
 void Printer::print_pointer_relation(const Instruction& i) {
   const std::uint32_t a = i.operand(0), b = i.operand(1);
-  if (!is_buffer_pointer(a)) fail(instruction_name(i.op(), i.words()) + " of pointers that point into no buffer");
+  if (!is_buffer_pointer(a)) fail(rhi::instruction_name(i.op(), i.words()) + " of pointers that point into no buffer");
   const std::string difference = fmt::format("({}) - ({})", pointer_value(a), pointer_value(b));
   if (i.op() != spv::OpPtrDiff) return define(i, difference + (i.op() == spv::OpPtrEqual ? " == 0" : " != 0"));
   const std::uint32_t stride = get_decoration(expression_type_id(a), spv::DecorationArrayStride);

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"
 
 namespace tandem::cpu {
@@ -204,7 +204,7 @@ std::string Printer::traced_built_in(spv::BuiltIn built_in) const {
         break;
     }
   }
-  fail("built-in " + built_in_name(built_in) + " in this shader stage");
+  fail("built-in " + rhi::built_in_name(built_in) + " in this shader stage");
 }
 
 }  // namespace tandem::cpu

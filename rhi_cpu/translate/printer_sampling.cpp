@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 
@@ -57,7 +57,7 @@ Printer::ImageOperands Printer::image_operands(const Instruction& i, std::size_t
   take(spv::ImageOperandsConstOffsetsMask, operands.offsets);
   take(spv::ImageOperandsMinLodMask, operands.least_detail);
   for (const IgnoredOperand& each : ignored_operands) bits &= ~each.bit;
-  if (bits != 0) fail(fmt::format("{} with image operands {:#x}", instruction_name(i.op(), i.words()), bits));
+  if (bits != 0) fail(fmt::format("{} with image operands {:#x}", rhi::instruction_name(i.op(), i.words()), bits));
   return operands;
 }
 

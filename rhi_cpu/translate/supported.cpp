@@ -9,15 +9,14 @@
 #include <fmt/format.h>
 
 #include "rhi/error.hpp"
+#include "rhi/spirv_names.hpp"
+#include "rhi/spirv_words.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 
 namespace tandem::cpu {
 namespace {
-
-constexpr std::size_t header_words = 5;
 
 constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityShader,
@@ -178,27 +177,27 @@ class Checker {
     // The module is not validated yet: an instruction may be too short.
     const auto word = [i](std::size_t k) { return k < i.size() ? i[k] : 0u; };
     const auto op = static_cast<spv::Op>(word(0) & 0xffff);
-    if (!is_supported(op)) fail(instruction_name(op, i.subspan(1)));
+    if (!is_supported(op)) fail(rhi::instruction_name(op, i.subspan(1)));
     switch (op) {
       case spv::OpCapability:
-        if (!contains(capabilities, word(1))) fail("capability " + capability_name(word(1)));
+        if (!contains(capabilities, word(1))) fail("capability " + rhi::capability_name(word(1)));
         break;
       case spv::OpExtInstImport:
         import(word(1), literal_string(i.subspan(std::min<std::size_t>(2, i.size()))));
         break;
       case spv::OpEntryPoint:
         model_ = word(1);
-        if (!contains(execution_models, model_)) fail("execution model " + execution_model_name(model_));
+        if (!contains(execution_models, model_)) fail("execution model " + rhi::execution_model_name(model_));
         break;
       case spv::OpExecutionMode:
       case spv::OpExecutionModeId:
-        if (!contains(execution_modes, word(2))) fail("execution mode " + execution_mode_name(word(2)));
+        if (!contains(execution_modes, word(2))) fail("execution mode " + rhi::execution_mode_name(word(2)));
         break;
       case spv::OpTypeImage:
         check_image(word(3), word(6), word(7));
         break;
       case spv::OpTypePointer:
-        if (!contains(storage_classes, word(2))) fail("storage class " + storage_class_name(word(2)));
+        if (!contains(storage_classes, word(2))) fail("storage class " + rhi::storage_class_name(word(2)));
         break;
       case spv::OpTypeFloat:
         if (word(2) != 16 && word(2) != 32 && word(2) != 64) fail(fmt::format("OpTypeFloat {}", word(2)));
@@ -231,7 +230,7 @@ class Checker {
   void check_image(std::uint32_t dimension, std::uint32_t multisampled, std::uint32_t sampled) {
     if (sampled != 1 && sampled != 2) fail("OpTypeImage that may be sampled or not");
     if (multisampled != 0) fail("OpTypeImage with several samples");
-    if (!contains(dimensions, dimension)) fail("OpTypeImage of dimension " + dimension_name(dimension));
+    if (!contains(dimensions, dimension)) fail("OpTypeImage of dimension " + rhi::dimension_name(dimension));
   }
 
   void check_decoration(std::uint32_t decoration, std::uint32_t operand) {
@@ -240,16 +239,17 @@ class Checker {
     if (decoration == spv::DecorationFPRoundingMode && operand != spv::FPRoundingModeRTE &&
         operand != spv::FPRoundingModeRTZ)
       fail("rounding to an infinity");
-    if (!contains(decorations, decoration)) fail("decoration " + decoration_name(decoration));
+    if (!contains(decorations, decoration)) fail("decoration " + rhi::decoration_name(decoration));
     if (decoration == spv::DecorationBuiltIn && !contains(built_ins, operand))
-      fail("built-in " + built_in_name(operand));
+      fail("built-in " + rhi::built_in_name(operand));
   }
 
   void check_extended(std::uint32_t set_id, std::uint32_t instruction) {
     const auto set = sets_.find(set_id);
     if (set == sets_.end()) return fail("an extended instruction of an unknown set");
     if (set->second != "GLSL.std.450") return;  // NonSemantic: may be ignored
-    if (find_extended(instruction) == nullptr) fail("extended instruction " + extended_instruction_name(instruction));
+    if (find_extended(instruction) == nullptr)
+      fail("extended instruction " + rhi::extended_instruction_name(instruction));
   }
 
   std::vector<std::string> unsupported_;
@@ -259,11 +259,32 @@ class Checker {
 
 }  // namespace
 
+ShaderSupport shader_support() {
+  ShaderSupport support;
+  const auto list = [](std::vector<std::string>& names, const auto& values, auto name) {
+    for (const auto value : values) names.push_back(name(static_cast<std::uint32_t>(value)));
+    std::sort(names.begin(), names.end());
+  };
+  list(support.storage_classes, storage_classes, rhi::storage_class_name);
+  list(support.built_ins, built_ins, rhi::built_in_name);
+  list(support.execution_models, execution_models, rhi::execution_model_name);
+  list(support.execution_modes, execution_modes, rhi::execution_mode_name);
+  list(support.decorations, decorations, rhi::decoration_name);
+  return support;
+}
+
+std::vector<std::uint32_t> supported_capabilities() {
+  std::vector<std::uint32_t> numbers;
+  for (const spv::Capability capability : capabilities) numbers.push_back(capability);
+  std::sort(numbers.begin(), numbers.end());
+  return numbers;
+}
+
 bool is_supported(spv::Op op) { return contains(structural_instructions, op) || Printer::prints(op); }
 
 std::vector<std::string> unsupported_features(std::span<const std::uint32_t> spirv, const std::string& label) {
   Checker checker;
-  for (std::size_t i = header_words; i < spirv.size();) {
+  for (std::size_t i = rhi::spirv_header_words; i < spirv.size();) {
     const std::size_t length = spirv[i] >> 16;
     if (length == 0 || i + length > spirv.size())
       throw rhi::Error(rhi::ErrorCode::invalid_argument, label, "the SPIR-V is truncated");

@@ -9,6 +9,19 @@
 
 namespace tandem::cpu {
 
+/// What the translator handles, by SPIR-V's names, sorted.
+struct ShaderSupport {
+  std::vector<std::string> storage_classes;
+  std::vector<std::string> built_ins;
+  std::vector<std::string> execution_models;
+  std::vector<std::string> execution_modes;
+  std::vector<std::string> decorations;
+};
+ShaderSupport shader_support();
+
+/// SPIR-V's numbers, ascending.
+std::vector<std::uint32_t> supported_capabilities();
+
 /// Whether the translator handles an instruction; some uses of it may be refused all the same.
 bool is_supported(spv::Op op);
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "rhi/compute_pipeline.hpp"
+#include "rhi_cpu/translate/translate_options.hpp"
 
 /// SPIR-V to C++: one shader, of compute or of a ray tracing stage, becomes one C++20 translation unit that includes
 /// headers of rhi_cpu/kernel/ and exports one function that returns its kernel::KernelInfo.
@@ -12,18 +12,6 @@ namespace tandem::cpu {
 
 /// Raised whenever the same SPIR-V translates to other C++ than before.
 inline constexpr std::uint32_t translator_version = 6;
-
-struct TranslateOptions {
-  /// Values of specialisation constants, baked in; the others keep their defaults.
-  std::span<const rhi::SpecializationValue> specialization;
-  /// The exported function, extern "C" const tandem::kernel::KernelInfo* entry_symbol().
-  std::string entry_symbol = "tandem_kernel";
-  /// Accesses outside of buffers, images, descriptor arrays and the shader's own arrays read zero and write nothing.
-  /// Buffer references and pointers as values are not checked.
-  bool robust = false;
-  /// Loops look at kernel::Dispatch::watch.
-  bool watched = false;
-};
 
 struct Translation {
   std::string source;

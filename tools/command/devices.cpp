@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "devices/devices.hpp"
+#include "devices/shader_support.hpp"
 #include "tools/command.hpp"
 #include "tools/output/messages.hpp"
+#include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/report/device_json.hpp"
 
@@ -38,8 +41,16 @@ std::string capability_names(const rhi::Capabilities& capabilities) {
   return names.empty() ? "none" : names;
 }
 
-int list_devices(bool as_json) {
+int list_devices(bool as_json, const std::filesystem::path& markdown) {
   const std::vector<rhi::DeviceInfo> devices = enumerate_devices(print_message);
+  if (!markdown.empty()) {
+    const std::vector<OutputFile> files = {
+        {markdown, [&](const std::filesystem::path& path) { write_text(path, shader_support_markdown(devices)); }}};
+    check_output_files(files);
+    write_or_rescue(files);
+    print_written(files);
+    return exit_code::success;
+  }
   if (as_json) {
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (const rhi::DeviceInfo& device : devices) json.push_back(to_json_in_full(device));
@@ -60,9 +71,13 @@ int list_devices(bool as_json) {
 void add_devices_command(CLI::App& app, Action& action) {
   CLI::App* const command = app.add_subcommand("devices", "List the devices that can render");
   const auto as_json = std::make_shared<bool>(false);
+  const auto markdown = std::make_shared<std::filesystem::path>();
   command->add_flag("--json", *as_json, "Print JSON, with all capabilities and limits");
+  command->add_option("--markdown", *markdown,
+                      "Write what shaders may use on each device as Markdown (docs/results/shader-support.md)");
   command->footer("--device, --a and --b take these names; 'vulkan' without a number is the first Vulkan device.");
-  command->callback([&action, as_json] { action = [as_json] { return list_devices(*as_json); }; });
+  command->callback(
+      [&action, as_json, markdown] { action = [as_json, markdown] { return list_devices(*as_json, *markdown); }; });
 }
 
 }  // namespace tandem::tools

@@ -12,9 +12,9 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "rhi/error.hpp"
+#include "rhi/spirv_names.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
 #include "rhi_cpu/translate/operations.hpp"
-#include "rhi_cpu/translate/spirv_names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 #include "rhi_cpu/translate/translate.hpp"
 

@@ -8,7 +8,7 @@
 
 /// What SPIR-V calls its instructions and enumerants, as its disassembler prints them; the number of what it does not
 /// know.
-namespace tandem::cpu {
+namespace tandem::rhi {
 
 /// For example "OpImageWrite".
 /// @param words that follow the opcode
@@ -28,4 +28,4 @@ std::string dimension_name(std::uint32_t dimension);               ///< of an im
 std::string image_format_name(std::uint32_t format);               ///< for example "R8ui"
 std::string extended_instruction_name(std::uint32_t instruction);  ///< of GLSL.std.450, for example "IMix"
 
-}  // namespace tandem::cpu
+}  // namespace tandem::rhi

@@ -1,4 +1,4 @@
-#include "rhi_cpu/translate/spirv_names.hpp"
+#include "rhi/spirv_names.hpp"
 
 #include <cstddef>
 #include <sstream>
@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <spirv-tools/libspirv.hpp>
 
-namespace tandem::cpu {
+namespace tandem::rhi {
 namespace {
 
 using Words = std::vector<std::uint32_t>;
@@ -97,4 +97,4 @@ std::string extended_instruction_name(std::uint32_t instruction_number) {
   return word(spv::OpExtInst, {other_id, 3, id, instruction_number}, 3, instruction_number, set);
 }
 
-}  // namespace tandem::cpu
+}  // namespace tandem::rhi

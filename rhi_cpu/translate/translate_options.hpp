@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "rhi/pipeline.hpp"
+
+namespace tandem::cpu {
+
+struct TranslateOptions {
+  /// Values of specialisation constants, baked in; the others keep their defaults.
+  std::span<const rhi::SpecializationValue> specialization;
+  /// The exported function, extern "C" const tandem::kernel::KernelInfo* entry_symbol().
+  std::string entry_symbol = "tandem_kernel";
+  /// Accesses outside of buffers, images, descriptor arrays and the shader's own arrays read zero and write nothing.
+  /// Buffer references and pointers as values are not checked.
+  bool robust = false;
+  /// Loops look at kernel::Dispatch::watch.
+  bool watched = false;
+};
+
+}  // namespace tandem::cpu
