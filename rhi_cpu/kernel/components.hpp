@@ -166,12 +166,20 @@ constexpr glm::vec<length, T> select(const glm::vec<length, bool>& condition, co
   return each([](bool c, T x, T y) { return c ? x : y; }, condition, if_true, if_false);
 }
 
-// Integer arithmetic.
+// Arithmetic.
 
+/// Integers wrap; a float changes its sign, which GLM's -vec4, 0 - v, does not do to a zero.
 template <typename T>
 constexpr T negate(const T& a) {
   using C = component_t<T>;
-  return each([](C x) { return static_cast<C>(0 - static_cast<std::make_unsigned_t<C>>(x)); }, a);
+  return each(
+      [](C x) {
+        if constexpr (std::is_integral_v<C>)
+          return static_cast<C>(0 - static_cast<std::make_unsigned_t<C>>(x));
+        else
+          return -x;
+      },
+      a);
 }
 
 /// Truncated quotient; x / 0 is -1 (all bits set), INT_MIN / -1 is INT_MIN, as lavapipe gives.

@@ -47,7 +47,7 @@ inline T normalize(T x) {
 template <int length, typename T>
 inline glm::vec<length, T> face_forward(const glm::vec<length, T>& n, const glm::vec<length, T>& incident,
                                         const glm::vec<length, T>& reference) {
-  return kernel::dot(reference, incident) < T{0} ? n : -n;
+  return kernel::dot(reference, incident) < T{0} ? n : kernel::negate(n);
 }
 
 template <int length, typename T>

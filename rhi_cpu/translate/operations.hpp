@@ -45,7 +45,7 @@ inline constexpr Operation operations[] = {
     {spv::OpFDiv, Shape::infix, "/"},
     {spv::OpVectorTimesScalar, Shape::infix, "*"},
     {spv::OpMatrixTimesScalar, Shape::infix, "*"},
-    {spv::OpFNegate, Shape::prefix, "-"},
+    {spv::OpFNegate, Shape::call, "negate"},
     {spv::OpSNegate, Shape::call, "negate", Sign::as_signed},
     {spv::OpSDiv, Shape::call, "divide", Sign::as_signed},
     {spv::OpUDiv, Shape::call, "divide", Sign::as_unsigned},

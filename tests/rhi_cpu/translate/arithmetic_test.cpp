@@ -188,6 +188,21 @@ TEST_CASE("relations know signs and NaN") {
   CHECK(result == std::vector<std::int32_t>{2 + 16, 1, 2, 1 + 2, 2, 3, -1, 2});
 }
 
+TEST_CASE("a negated zero has the other sign in vectors of every length") {
+  const std::vector<std::int32_t> result = run(R"(
+    vec4 zeros = vec4(f[0], f[1], f[0], f[i[0]]);
+    ivec2 two = floatBitsToInt(-zeros.xy);
+    ivec3 three = floatBitsToInt(-zeros.xyz);
+    ivec4 four = floatBitsToInt(-zeros), turned = floatBitsToInt(faceforward(zeros, vec4(1), vec4(1)));
+    result[0] = int(two.x < 0) + 2 * int(two.y < 0);
+    result[1] = int(three.x < 0) + 2 * int(three.y < 0) + 4 * int(three.z < 0);
+    result[2] = int(four.x < 0) + 2 * int(four.y < 0) + 4 * int(four.z < 0) + 8 * int(four.w < 0);
+    result[3] = int(turned.x < 0) + 2 * int(turned.y < 0) + 4 * int(turned.z < 0) + 8 * int(turned.w < 0);
+  )",
+                                               {1}, {0.0f, -0.0f}, 4);
+  CHECK(result == std::vector<std::int32_t>{1, 5, 5, 5});
+}
+
 TEST_CASE("64-bit and small integers and doubles") {
   const std::vector<std::int64_t> integers =
       evaluate<std::int64_t>("int64_t", 5, R"(
