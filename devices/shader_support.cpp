@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 
 namespace tandem {
@@ -20,7 +20,7 @@ std::string row(const std::string& first, std::span<const std::string> cells) {
 std::string head(const std::string& first, std::span<const rhi::DeviceInfo> devices) {
   std::vector<std::string> names;
   for (const rhi::DeviceInfo& device : devices) names.push_back(fmt::format("`{}`", device.name));
-  return row(first, names) + row("---", std::vector<std::string>(devices.size(), "---"));
+  return fmt::format("{}{}", row(first, names), row("---", std::vector<std::string>(devices.size(), "---")));
 }
 
 std::string capabilities(std::span<const rhi::DeviceInfo> devices) {
@@ -39,7 +39,9 @@ std::string capabilities(std::span<const rhi::DeviceInfo> devices) {
 
 std::string letters(const rhi::FormatSupport& support) {
   std::string text;
-  const auto add = [&](bool has, char letter) { text += has ? std::string(1, letter) : ""; };
+  const auto add = [&](bool has, char letter) {
+    if (has) text += letter;
+  };
   add(support.storage, 'S');
   add(support.storage_atomic, 'A');
   add(support.sampled, 'L');
@@ -62,16 +64,17 @@ std::string formats(std::span<const rhi::DeviceInfo> devices) {
 /// A bullet with the names, in lines of at most 120 columns.
 std::string bullet(const std::string& what, const std::vector<std::string>& names) {
   constexpr std::size_t columns = 120;
-  std::string text, line = "- " + what + ":";
+  std::string text;
+  std::string line = fmt::format("- {}:", what);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string word = names[i] + (i + 1 < names.size() ? "," : ".");
+    const std::string word = fmt::format("{}{}", names[i], i + 1 < names.size() ? "," : ".");
     if (line.size() + 1 + word.size() > columns) {
-      text += line + "\n";
-      line = " ";
+      text += fmt::format("{}\n", line);
+      line.assign(1, ' ');
     }
-    line += " " + word;
+    line += fmt::format(" {}", word);
   }
-  return text + line + "\n";
+  return fmt::format("{}{}\n", text, line);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <spirv_cross/spirv_cross.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/reflected_spirv.hpp"
-#include "rhi/spirv_validation.hpp"
+#include "rhi/spirv/reflected.hpp"
+#include "rhi/spirv/validation.hpp"
 
 namespace tandem::rhi {
 namespace {

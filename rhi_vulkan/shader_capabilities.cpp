@@ -7,7 +7,7 @@
 #include <spirv/unified1/spirv.hpp11>
 
 #include "rhi/error.hpp"
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 
 namespace tandem::vulkan {
 namespace {

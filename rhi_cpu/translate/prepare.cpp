@@ -8,10 +8,10 @@
 #include <spirv_cross/spirv.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/spirv_names.hpp"
-#include "rhi/spirv_validation.hpp"
-#include "rhi/spirv_words.hpp"
-#include "rhi_cpu/translate/constant_folding.hpp"
+#include "rhi/spirv/names.hpp"
+#include "rhi/spirv/validation.hpp"
+#include "rhi/spirv/words.hpp"
+#include "rhi_cpu/translate/folding/constant_folding.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 

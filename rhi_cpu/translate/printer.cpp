@@ -1,5 +1,5 @@
 #include "rhi_cpu/translate/printer.hpp"
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 
 #include <algorithm>
 #include <unordered_set>

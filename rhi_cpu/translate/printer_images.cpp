@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 #include "rhi_cpu/translate/kernel_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 

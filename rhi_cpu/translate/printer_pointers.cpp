@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {

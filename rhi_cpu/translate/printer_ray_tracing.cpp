@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"

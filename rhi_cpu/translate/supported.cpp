@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "rhi/error.hpp"
-#include "rhi/spirv_names.hpp"
-#include "rhi/spirv_words.hpp"
+#include "rhi/spirv/names.hpp"
+#include "rhi/spirv/words.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/refusal.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "devices/devices.hpp"
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 #include "rhi_vulkan/shader_capabilities.hpp"
 

@@ -72,6 +72,28 @@ foreach(device cpu cpu-exact)
   endif()
 endforeach()
 
+# A program that renders nothing needs no packages for scenes and pictures, and one for the rhi alone no backend's.
+function(check_components components)
+  set(folder "${WORK_FOLDER}/only")
+  file(REMOVE_RECURSE "${folder}")
+  list(TRANSFORM components PREPEND "Tandem::" OUTPUT_VARIABLE targets)
+  list(JOIN components " " components)
+  list(JOIN targets " " targets)
+  file(WRITE "${folder}/CMakeLists.txt"
+       "cmake_minimum_required(VERSION 3.25)\nproject(Only LANGUAGES CXX)\n"
+       "find_package(Tandem 0.1 REQUIRED COMPONENTS ${components})\n"
+       "add_executable(only \"${EXAMPLES}/your_shader/main.cpp\")\ntarget_link_libraries(only PRIVATE ${targets})\n")
+  set(disabled)
+  foreach(package IN LISTS ARGN)
+    list(APPEND disabled "-DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON")
+  endforeach()
+  run("${CMAKE_COMMAND}" -S "${folder}" -B "${folder}/build" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${moved}"
+      "-DCMAKE_CXX_COMPILER=${COMPILER}" ${disabled})
+endfunction()
+set(scene_packages TinyGLTF tinyobjloader ZLIB tinyexr PNG)
+check_components("devices;glsl;rhi" ${scene_packages})
+check_components("rhi" ${scene_packages} Vulkan TBB embree glslang spirv_cross_glsl nlohmann_json glm)
+
 # A component that does not exist is an error that names it.
 execute_process(
   COMMAND "${CMAKE_COMMAND}" -S "${EXAMPLES}" -B "${WORK_FOLDER}/no_component" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${moved}"

@@ -12,7 +12,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
 #include "rhi_cpu/translate/operations.hpp"
 #include "rhi_cpu/translate/supported.hpp"
@@ -271,7 +271,7 @@ TEST_CASE("an instruction is refused exactly if nothing prints it") {
       error = refusal.what();
     }
     const bool refused =
-        error == "a label: " + tandem::cpu::instruction_name(op, {}) + " is not supported by the CPU device";
+        error == "a label: " + tandem::rhi::instruction_name(op, {}) + " is not supported by the CPU device";
     if (refused == tandem::cpu::is_supported(op)) {
       CAPTURE(opcode);
       CAPTURE(error);

@@ -1,4 +1,4 @@
-#include "rhi/spirv_names.hpp"
+#include "rhi/spirv/names.hpp"
 
 #include <cstddef>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "rhi_cpu/translate/scalar_folding.hpp"
+#include "rhi_cpu/translate/folding/scalar_folding.hpp"
 
 #include <bit>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "rhi_cpu/launch_watch.hpp"
+#include "rhi_cpu/launch/launch_watch.hpp"
 
 #include <type_traits>
 

@@ -1,4 +1,4 @@
-#include "rhi/spirv_validation.hpp"
+#include "rhi/spirv/validation.hpp"
 
 #include <string>
 #include <unordered_set>
@@ -7,7 +7,7 @@
 #include <spirv-tools/libspirv.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/spirv_words.hpp"
+#include "rhi/spirv/words.hpp"
 
 namespace tandem::rhi {
 namespace {

@@ -1,4 +1,4 @@
-#include "rhi/entry_point.hpp"
+#include "rhi/spirv/entry_point.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -8,7 +8,7 @@
 #include <spirv-tools/optimizer.hpp>
 
 #include "rhi/error.hpp"
-#include "rhi/spirv_words.hpp"
+#include "rhi/spirv/words.hpp"
 
 namespace tandem::rhi {
 namespace {

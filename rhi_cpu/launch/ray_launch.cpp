@@ -1,9 +1,9 @@
-#include "rhi_cpu/ray_launch.hpp"
+#include "rhi_cpu/launch/ray_launch.hpp"
 
 #include <algorithm>
 #include <vector>
 
-#include "rhi_cpu/launch_watch.hpp"
+#include "rhi_cpu/launch/launch_watch.hpp"
 #include "rhi_cpu/trace_ray.hpp"
 
 namespace tandem::cpu {

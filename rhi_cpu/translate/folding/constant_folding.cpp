@@ -1,5 +1,5 @@
-#include "rhi_cpu/translate/constant_folding.hpp"
-#include "rhi/spirv_words.hpp"
+#include "rhi_cpu/translate/folding/constant_folding.hpp"
+#include "rhi/spirv/words.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -7,7 +7,7 @@
 
 #include <spirv_cross/spirv.hpp>
 
-#include "rhi_cpu/translate/scalar_folding.hpp"
+#include "rhi_cpu/translate/folding/scalar_folding.hpp"
 
 namespace tandem::cpu {
 namespace {

@@ -1,8 +1,8 @@
-#include "rhi/reflected_spirv.hpp"
+#include "rhi/spirv/reflected.hpp"
 
 #include <unordered_set>
 
-#include "rhi/spirv_words.hpp"
+#include "rhi/spirv/words.hpp"
 
 namespace tandem::rhi {
 namespace {
