@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -67,7 +68,10 @@ std::string bullet(const std::string& what, const std::vector<std::string>& name
   std::string text;
   std::string line = fmt::format("- {}:", what);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const std::string word = fmt::format("{}{}", names[i], i + 1 < names.size() ? "," : ".");
+    // SPIRV-Tools still has the first names of what KHR took over.
+    const std::string_view name = names[i];
+    const std::string word = fmt::format("{}{}{}", name.substr(0, name.size() - (name.ends_with("NV") ? 2 : 0)),
+                                         name.ends_with("NV") ? "KHR" : "", i + 1 < names.size() ? "," : ".");
     if (line.size() + 1 + word.size() > columns) {
       text += fmt::format("{}\n", line);
       line.assign(1, ' ');

@@ -1,7 +1,7 @@
 #include "rhi/shader_module.hpp"
 
-#include "rhi/spirv/entry_point.hpp"
-#include "rhi/spirv/validation.hpp"
+#include "rhi/entry_point.hpp"
+#include "rhi/spirv_validation.hpp"
 
 namespace tandem::rhi {
 namespace {

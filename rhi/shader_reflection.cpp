@@ -10,7 +10,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi/spirv/reflected.hpp"
-#include "rhi/spirv/validation.hpp"
+#include "rhi/spirv_validation.hpp"
 
 namespace tandem::rhi {
 namespace {

@@ -15,8 +15,8 @@
 #include "rhi_cpu/buffer.hpp"
 #include "rhi_cpu/compute_pipeline.hpp"
 #include "rhi_cpu/launch/launch_watch.hpp"
-#include "rhi_cpu/launch/ray_launch.hpp"
 #include "rhi_cpu/query_pool.hpp"
+#include "rhi_cpu/ray_launch.hpp"
 #include "rhi_cpu/shader_table.hpp"
 #include "rhi_cpu/texture.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "rhi_cpu/launch/ray_launch.hpp"
+#include "rhi_cpu/ray_launch.hpp"
 
 namespace tandem::cpu {
 

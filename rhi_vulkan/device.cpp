@@ -192,7 +192,10 @@ std::vector<rhi::DeviceInfo> enumerate(const rhi::MessageCallback& on_message) {
   try {
     const Instance instance(false, on_message);
     const PhysicalDevices devices = find_physical_devices(instance);
-    for (const PhysicalDevice& device : devices.qualifying) infos.push_back(device.info);
+    for (const PhysicalDevice& device : devices.qualifying) {
+      infos.push_back(device.info);
+      infos.back().spirv_capabilities = offered_capabilities(device);
+    }
     for (const std::string& refusal : devices.refusals) warn(refusal);
   } catch (const rhi::Error& error) {
     warn(error.what());
@@ -211,6 +214,7 @@ rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   if (index >= devices.qualifying.size()) throw_no_such_device(desc.name, devices);
   PhysicalDevice& physical = devices.qualifying[index];
   if (!desc.robust_access) forget_robust_access(physical.features);
+  physical.info.spirv_capabilities = offered_capabilities(physical);
   return make_device(std::move(instance), std::move(physical));
 }
 

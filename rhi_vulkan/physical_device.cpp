@@ -8,7 +8,6 @@
 
 #include "rhi_vulkan/error.hpp"
 #include "rhi_vulkan/formats.hpp"
-#include "rhi_vulkan/shader_capabilities.hpp"
 
 namespace tandem::vulkan {
 namespace {
@@ -192,7 +191,6 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   info.limits = limits_of(core_properties.limits, acceleration);
   for (std::size_t i = 0; i < info.formats.size(); ++i)
     info.formats[i] = support_of(device.handle, static_cast<rhi::TextureFormat>(i));
-  info.spirv_capabilities = offered_capabilities(device);
   if (device.features.ray_tracing_pipeline.rayTracingPipeline) add_ray_tracing_pipeline_limits(device);
   return device;
 }

@@ -9,8 +9,8 @@
 
 #include "rhi/error.hpp"
 #include "rhi/spirv/names.hpp"
-#include "rhi/spirv/validation.hpp"
 #include "rhi/spirv/words.hpp"
+#include "rhi/spirv_validation.hpp"
 #include "rhi_cpu/translate/folding/constant_folding.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/supported.hpp"

@@ -31,7 +31,8 @@ std::set<std::string> difference(const std::set<std::string>& a, const std::set<
 TEST_CASE("Both backends know the same capabilities, but for those that the CPU devices have yet to learn") {
   const std::set<std::string> cpu = names_of(cpu::supported_capabilities());
   const std::set<std::string> vulkan = names_of(vulkan::known_capabilities());
-  CHECK(difference(cpu, vulkan) == std::set<std::string>{});
+  // A promise to compilers, whose feature Debian 12's Vulkan headers do not know.
+  CHECK(difference(cpu, vulkan) == std::set<std::string>{"ExpectAssumeKHR"});
   // Subgroups and shared memory; other ways to round.
   CHECK(difference(vulkan, cpu) ==
         std::set<std::string>{"DenormFlushToZero", "GroupNonUniform", "GroupNonUniformArithmetic",

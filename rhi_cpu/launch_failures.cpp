@@ -1,4 +1,4 @@
-#include "rhi_cpu/launch/launch_failures.hpp"
+#include "rhi_cpu/launch_failures.hpp"
 
 #include <string>
 

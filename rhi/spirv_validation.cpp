@@ -1,4 +1,4 @@
-#include "rhi/spirv/validation.hpp"
+#include "rhi/spirv_validation.hpp"
 
 #include <string>
 #include <unordered_set>

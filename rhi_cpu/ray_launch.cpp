@@ -1,4 +1,4 @@
-#include "rhi_cpu/launch/ray_launch.hpp"
+#include "rhi_cpu/ray_launch.hpp"
 
 #include <algorithm>
 #include <vector>

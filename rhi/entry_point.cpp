@@ -1,4 +1,4 @@
-#include "rhi/spirv/entry_point.hpp"
+#include "rhi/entry_point.hpp"
 
 #include <algorithm>
 #include <cstring>

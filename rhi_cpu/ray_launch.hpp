@@ -9,7 +9,7 @@
 #include "rhi_cpu/bind_group.hpp"
 #include "rhi_cpu/device_state.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
-#include "rhi_cpu/launch/launch_failures.hpp"
+#include "rhi_cpu/launch_failures.hpp"
 #include "rhi_cpu/shader_table.hpp"
 
 namespace tandem::cpu {
