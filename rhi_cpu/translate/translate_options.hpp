@@ -9,7 +9,7 @@ namespace tandem::cpu {
 
 struct TranslateOptions {
   /// Values of specialisation constants, baked in; the others keep their defaults.
-  std::span<const rhi::SpecializationValue> specialization;
+  std::span<const rhi::SpecializationValue> specialization = {};
   /// The exported function, extern "C" const tandem::kernel::KernelInfo* entry_symbol().
   std::string entry_symbol = "tandem_kernel";
   /// Accesses outside of buffers, images, descriptor arrays and the shader's own arrays read zero and write nothing.

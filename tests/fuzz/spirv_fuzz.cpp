@@ -63,6 +63,22 @@ void main() {
   t[gl_GlobalInvocationID.x] = rayQueryGetIntersectionTEXT(query, true);
   imageStore(pictures[gl_GlobalInvocationID.x & 1], ivec2(0), imageLoad(pictures[0], ivec2(1)));
 
+})"),
+                               compute(R"(
+#extension GL_EXT_nonuniform_qualifier : require
+#extension GL_EXT_shader_explicit_arithmetic_types : require
+layout(binding = 0) uniform sampler2D pictures[];
+layout(binding = 3) uniform sampler2DArrayShadow depths;
+layout(binding = 4, scalar) buffer Halves { f16vec3 halves[]; };
+layout(binding = 6, scalar) buffer Bytes { i8vec4 bytes[count]; } aliases[];
+layout(binding = 5) uniform samplerBuffer texels;
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  vec4 sum = textureLod(pictures[nonuniformEXT(i)], vec2(0.5), scale) + texelFetch(texels, int(i));
+  sum += textureGatherOffset(pictures[1], sum.xy, ivec2(1, -1), 2);
+  sum.x += textureGrad(depths, sum, sum.xy, sum.zw);
+  halves[i] = normalize(f16vec3(sum.xyz)) * float16_t(aliases[i].bytes[1].x);
+  for (uint k = 0; k < count; ++k) halves[k] = fma(halves[i], halves[k], f16vec3(sum.w));
 })")};
   for (const auto words : {shaders::path_trace_rmiss(), shaders::path_trace_rchit(), shaders::path_trace_rahit(),
                            shaders::path_trace_rint(), shaders::ray_answer_rgen(), shaders::path_log_rmiss()})
@@ -74,7 +90,7 @@ void main() {
 std::string outcome(const Words& words) {
   try {
     rhi::reflect(words, "mutant");
-    cpu::translate(words, "mutant");
+    cpu::translate(words, "mutant", {.robust = true, .watched = true});
     return "translated";
   } catch (const rhi::Error& error) {
     const std::string text = error.what();
