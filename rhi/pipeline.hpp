@@ -12,10 +12,10 @@
 
 namespace tandem::rhi {
 
-/// The value of one specialisation constant of 32 bits: int, uint or float bits; bool: 0 or 1.
+/// The value of one specialisation constant: its bits, the lowest ones where it has less than 64; bool: 0 or 1.
 struct SpecializationValue {
   std::uint32_t id = 0;
-  std::uint32_t value = 0;
+  std::uint64_t value = 0;
 };
 
 /// What the shaders of a pipeline bind, together.

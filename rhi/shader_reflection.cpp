@@ -267,11 +267,11 @@ class Reflector {
   void add_specialization_constants() {
     for (const spirv_cross::SpecializationConstant& constant : compiler_.get_specialization_constants()) {
       const spirv_cross::SPIRConstant& value = compiler_.get_constant(constant.id);
-      if (compiler_.get_type(value.constant_type).width > 32)
-        throw Error(ErrorCode::unsupported, label_,
-                    "specialisation constant " + std::to_string(constant.constant_id) + " is wider than 32 bits");
-      result_.specialization_constants.push_back(
-          {constant.constant_id, value.scalar(), compiler_.get_name(constant.id)});
+      const std::uint32_t width = compiler_.get_type(value.constant_type).width;
+      result_.specialization_constants.push_back({.id = constant.constant_id,
+                                                  .default_value = width == 64 ? value.scalar_u64() : value.scalar(),
+                                                  .name = compiler_.get_name(constant.id),
+                                                  .width = width == 1 ? 32 : width});
     }
     std::sort(result_.specialization_constants.begin(), result_.specialization_constants.end(),
               [](const SpecializationConstant& a, const SpecializationConstant& b) { return a.id < b.id; });

@@ -42,8 +42,9 @@ struct ShaderBinding {
 /// A specialisation constant that has a SpecId.
 struct SpecializationConstant {
   std::uint32_t id = 0;             ///< layout(constant_id = id)
-  std::uint32_t default_value = 0;  ///< the bits; bool: 0 or 1
+  std::uint64_t default_value = 0;  ///< the bits, from the lowest one on; bool: 0 or 1
   std::string name;
+  std::uint32_t width = 32;  ///< bits of a value; of a bool 32
 };
 
 /// What a pipeline has to know about a module. Bindings are sorted by (set, binding).

@@ -11,7 +11,7 @@ ComputePipeline::ComputePipeline(ContextHandle context, const rhi::ComputePipeli
   const auto& shader = own<ShaderModule>(desc.shader, context_, desc.label, "shader module");
   translating_errors(desc.label, "create the compute pipeline", [&] {
     layout_.emplace(*context_, interface());
-    const Specialization specialization(desc.specialization);
+    const Specialization specialization(desc.specialization, {&desc.shader, 1});
     const vk::PipelineShaderStageCreateInfo stage = {.stage = vk::ShaderStageFlagBits::eCompute,
                                                      .module = shader.handle(),
                                                      .pName = reflection().entry_point.c_str(),

@@ -1,5 +1,7 @@
 #include "rhi_vulkan/pipeline_layout.hpp"
 
+#include <bit>
+
 #include "rhi_vulkan/compute_pipeline.hpp"
 #include "rhi_vulkan/ray_tracing_pipeline.hpp"
 
@@ -56,12 +58,21 @@ const PipelineLayout& layout_of(const rhi::PipelineHandle& pipeline, const Conte
   return own<RayTracingPipeline>(pipeline, context, label, "pipeline").layout();
 }
 
-Specialization::Specialization(std::span<const rhi::SpecializationValue> values) {
+Specialization::Specialization(std::span<const rhi::SpecializationValue> values,
+                               std::span<const rhi::ShaderModuleHandle> shaders) {
+  const auto width_of = [&](std::uint32_t id) {
+    for (const rhi::ShaderModuleHandle& shader : shaders)
+      for (const rhi::SpecializationConstant& constant : shader->reflection().specialization_constants)
+        if (constant.id == id) return constant.width;
+    return 32u;
+  };
+  // The lowest bytes come first.
+  static_assert(std::endian::native == std::endian::little);
   for (std::size_t i = 0; i < values.size(); ++i)
     entries_.push_back({.constantID = values[i].id,
                         .offset = static_cast<std::uint32_t>(i * sizeof(rhi::SpecializationValue) +
                                                              offsetof(rhi::SpecializationValue, value)),
-                        .size = sizeof(rhi::SpecializationValue::value)});
+                        .size = width_of(values[i].id) / 8});
   info_ = vk::SpecializationInfo{.mapEntryCount = static_cast<std::uint32_t>(entries_.size()),
                                  .pMapEntries = entries_.data(),
                                  .dataSize = values.size_bytes(),

@@ -35,7 +35,8 @@ const PipelineLayout& layout_of(const rhi::PipelineHandle& pipeline, const Conte
 /// Values of specialisation constants in Vulkan's terms. Refers to the values it was made from.
 class Specialization {
  public:
-  explicit Specialization(std::span<const rhi::SpecializationValue> values);
+  /// @param shaders whose constants have the values; they say how wide each is
+  Specialization(std::span<const rhi::SpecializationValue> values, std::span<const rhi::ShaderModuleHandle> shaders);
   Specialization(const Specialization&) = delete;
   Specialization& operator=(const Specialization&) = delete;
 

@@ -96,7 +96,7 @@ RayTracingPipeline::RayTracingPipeline(ContextHandle context, const rhi::RayTrac
     : rhi::RayTracingPipeline(desc), context_(std::move(context)) {
   translating_errors(desc.label, "create the ray tracing pipeline", [&] {
     layout_.emplace(*context_, interface());
-    const Specialization specialization(desc.specialization);
+    const Specialization specialization(desc.specialization, rhi::shaders_of(desc));
     const Groups groups(desc, context_, specialization.info());
     constexpr vk::DynamicState stack_size = vk::DynamicState::eRayTracingPipelineStackSizeKHR;
     const vk::PipelineDynamicStateCreateInfo dynamic_state = {.dynamicStateCount = needs_stack_size(desc) ? 1u : 0u,

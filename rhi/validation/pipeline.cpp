@@ -151,7 +151,8 @@ void check(const ComputePipelineDesc& desc, const DeviceInfo& device) {
   std::array<std::uint32_t, 3> size = desc.shader->reflection().workgroup_size;
   for (std::size_t i = 0; i < 3; ++i)
     for (const SpecializationValue& given : desc.specialization)
-      if (desc.shader->reflection().workgroup_size_constant[i] == given.id) size[i] = given.value;
+      if (desc.shader->reflection().workgroup_size_constant[i] == given.id)
+        size[i] = static_cast<std::uint32_t>(given.value);
   const std::string problem = workgroup_problem(size, device.limits);
   require(problem.empty(), desc.label, problem);
   check_interface(combined_interface({&desc.shader, 1}, desc.label, desc.unsized_array_length), desc.label, device);

@@ -55,8 +55,7 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
   hasher.add(compiler.path.string()).add(compiler.version);
   hasher.add(kernel_compile_options()).add(processor_identity());
   hasher.add(std::as_bytes(spirv));
-  for (const rhi::SpecializationValue& value : values)
-    hasher.add(std::uint64_t{value.id}).add(std::uint64_t{value.value});
+  for (const rhi::SpecializationValue& value : values) hasher.add(std::uint64_t{value.id}).add(value.value);
   return hasher.hash();
 }
 

@@ -182,13 +182,14 @@ constexpr T negate(const T& a) {
       a);
 }
 
-/// Truncated quotient; x / 0 is -1 (all bits set), INT_MIN / -1 is INT_MIN, as lavapipe gives.
+/// Truncated quotient, as lavapipe gives it: x / 0 is 0 of signed numbers and all bits set of unsigned ones,
+/// INT_MIN / -1 is INT_MIN.
 template <typename T>
 constexpr T divide(const T& a, const T& b) {
   using C = component_t<T>;
   return each(
       [](C x, C y) {
-        if (y == 0) return static_cast<C>(-1);
+        if (y == 0) return static_cast<C>(std::is_signed_v<C> ? 0 : -1);
         if constexpr (std::is_signed_v<C>)
           if (y == -1) return kernel::negate(x);
         return static_cast<C>(x / y);

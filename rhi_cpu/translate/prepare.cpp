@@ -1,7 +1,6 @@
 #include "rhi_cpu/translate/prepare.hpp"
 
 #include <unordered_map>
-#include <unordered_set>
 
 #include <fmt/format.h>
 #include <spirv-tools/optimizer.hpp>
@@ -53,15 +52,23 @@ std::vector<std::uint32_t> optimize(std::span<const std::uint32_t> spirv, const 
 
 std::vector<std::uint32_t> specialize(std::span<const std::uint32_t> spirv, const std::string& label,
                                       std::span<const rhi::SpecializationValue> values) {
-  std::unordered_set<std::uint32_t> declared;
+  constexpr std::size_t words_before_literal = 3;
+  std::unordered_map<std::uint32_t, std::uint32_t> spec_ids;  // of a constant's id
+  std::unordered_map<std::uint32_t, bool> is_wide;            // whether the constant of a SpecId has 64 bits
   for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    if (operation_of(i) == spv::OpDecorate && i[2] == spv::DecorationSpecId) declared.insert(i[3]);
+    if (operation_of(i) == spv::OpDecorate && i[2] == spv::DecorationSpecId) {
+      spec_ids[i[1]] = i[3];
+      is_wide[i[3]] = false;
+    }
+    if (operation_of(i) == spv::OpSpecConstant && spec_ids.contains(i[2]))
+      is_wide[spec_ids[i[2]]] = i.size() > words_before_literal + 1;
   });
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> words;
   for (const rhi::SpecializationValue& value : values) {
-    if (!declared.contains(value.id))
-      fail(label, fmt::format("the shader has no specialisation constant {}", value.id));
-    words[value.id] = {value.value};
+    const auto known = is_wide.find(value.id);
+    if (known == is_wide.end()) fail(label, fmt::format("the shader has no specialisation constant {}", value.id));
+    words[value.id] = {static_cast<std::uint32_t>(value.value)};
+    if (known->second) words[value.id].push_back(static_cast<std::uint32_t>(value.value >> 32));
   }
   if (!has_specialization(spirv)) return {spirv.begin(), spirv.end()};
 

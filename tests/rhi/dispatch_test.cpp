@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <utility>
 
@@ -116,6 +117,40 @@ void main() {
   CHECK_ERROR(invalid_argument, "specialised: ", run({{0, 1}, {0, 2}}));
   CHECK_ERROR(invalid_argument, "specialised: a workgroup size of 0", run({{7, 0}}));
   CHECK_ERROR(invalid_argument, "specialised: a workgroup size of 1048576", run({{7, 1u << 20}}));
+}
+
+TANDEM_DEVICE_TEST("specialization constants have every width") {
+  const rhi::Capabilities& can = device.info().capabilities;
+  REQUIRE((can.shader_int8 && can.shader_int16 && can.shader_int64 && can.shader_float16 && can.shader_float64));
+  const std::string source = R"(#version 460
+#extension GL_EXT_shader_explicit_arithmetic_types : require
+layout(constant_id = 1) const int8_t small = int8_t(-1);
+layout(constant_id = 2) const uint16_t middle = uint16_t(65535);
+layout(constant_id = 3) const int64_t wide = 5000000000l;
+layout(constant_id = 4) const double real = 0.1lf;
+layout(constant_id = 5) const float16_t half_real = float16_t(0.5);
+layout(constant_id = 6) const bool flag = true;
+layout(set = 0, binding = 0) buffer Values { double values[6]; };
+void main() {
+  values[0] = double(small);
+  values[1] = double(middle);
+  values[2] = double(wide);
+  values[3] = real;
+  values[4] = double(half_real);
+  values[5] = flag ? 1 : 0;
+}
+)";
+  const auto run = [&](std::vector<rhi::SpecializationValue> specialization) {
+    const rhi::ComputePipelineHandle pipeline =
+        test::compute_pipeline(device, source, "widths", std::move(specialization));
+    const rhi::BufferHandle values = test::buffer_of(device, std::vector<double>(6), "values");
+    test::run(device, pipeline, {values});
+    return contents<double>(device, values, 6);
+  };
+  CHECK(run({}) == std::vector<double>{-1, 65535, 5e9, 0.1, 0.5, 1});
+  CHECK(
+      run({{1, 0x80}, {2, 7}, {3, 0xfffffffe00000000u}, {4, std::bit_cast<std::uint64_t>(0.3)}, {5, 0x4000}, {6, 0}}) ==
+      std::vector<double>{-128, 7, -8589934592.0, 0.3, 2, 0});
 }
 
 TANDEM_DEVICE_TEST("two constants of one id keep their defaults until a value is given") {

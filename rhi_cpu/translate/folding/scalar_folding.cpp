@@ -40,7 +40,7 @@ std::uint64_t quantized(const ScalarConstant& a) {
 // As kernel::divide, kernel::remainder and kernel::modulo.
 
 std::int64_t divided(std::int64_t a, std::int64_t b) {
-  if (b == 0) return -1;
+  if (b == 0) return 0;
   return b == -1 ? static_cast<std::int64_t>(0 - as_bits(a)) : a / b;
 }
 
