@@ -256,7 +256,11 @@ class Reflector {
     const spirv_cross::SPIRType& type = compiler_.get_type(resource.type_id);
     std::uint32_t count = 1;
     for (std::size_t i = 0; i < type.array.size(); ++i) {
-      const std::uint32_t length = type.array_size_literal[i] ? type.array[i] : constant_value(type.array[i]);
+      const bool is_literal = type.array_size_literal[i];
+      if (!is_literal && compiler_.get_constant(type.array[i]).specialization)
+        throw Error(ErrorCode::unsupported, label_,
+                    "the array of descriptors " + resource.name + " has a specialisation constant as its length");
+      const std::uint32_t length = is_literal ? type.array[i] : constant_value(type.array[i]);
       count *= length;
     }
     return count;

@@ -62,8 +62,10 @@ void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGr
                                   .base_workgroup = {base[0], base[1], base[2]},
                                   .watch = watch.watch()};
   const std::uint64_t count = std::uint64_t{workgroup_count[0]} * workgroup_count[1] * workgroup_count[2];
-  device.workers.for_each_range(count,
-                                [&](std::uint64_t first, std::uint64_t end) { kernel.run(dispatch, first, end); });
+  device.workers.for_each_range(count, [&](std::uint64_t first, std::uint64_t end) {
+    watch.look();
+    kernel.run(dispatch, first, end);
+  });
 }
 
 Size read_size(const Buffer& buffer, std::uint64_t offset) {

@@ -65,10 +65,12 @@ void trace_rays(const ShaderTable& table, const FirstRecords& first, std::span<c
                          .watch = watch.watch()};
   const Tiling tiling(size);
   device.workers.for_each_range(tiling.count(), [&](std::uint64_t begin, std::uint64_t end) {
-    for (std::uint64_t tile = begin; tile < end; ++tile)
+    for (std::uint64_t tile = begin; tile < end; ++tile) {
+      watch.look();
       tiling.for_each_invocation(tile, [&](std::uint32_t x, std::uint32_t y, std::uint32_t z) {
         generate_rays(launch, record, push_constants.data(), {x, y, z}, size);
       });
+    }
   });
   watch.check();
   failures.check(table, pipeline.shaders());

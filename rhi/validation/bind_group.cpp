@@ -106,7 +106,9 @@ void check_bound_texture(const TextureView& view, const ShaderBinding& binding, 
           texture + " has " + to_string(layers) + " layers, fewer than are bound");
   const ResolvedView whole = resolved(view, is_storage);
   require(whole.dimension == binding.dimension, label, texture + " has another dimension than the image in the shader");
-  require(can_be_seen_as(desc, whole), label, texture + " cannot be seen as the image in the shader");
+  require(can_be_seen_as(desc, whole), label,
+          texture + " with " + to_string(whole.layer_count) + (whole.layer_count == 1 ? " layer" : " layers") +
+              " cannot be seen as the image in the shader");
   require(!is_storage || whole.level_count == 1, label, texture + ": a storage image is one level");
   require(!binding.format || *binding.format == desc.format, label,
           texture + " has another format than the image in the shader");

@@ -23,9 +23,9 @@ bool same_layout(const PipelineInterface& a, const PipelineInterface& b, std::ui
   const std::vector<ShaderBinding> first = in_set(a);
   const std::vector<ShaderBinding> second = in_set(b);
   return std::equal(first.begin(), first.end(), second.begin(), second.end(),
-                    [](const ShaderBinding& x, const ShaderBinding& y) {
+                    [&](const ShaderBinding& x, const ShaderBinding& y) {
                       return x.binding == y.binding && x.kind == y.kind && x.count == y.count &&
-                             x.dimension == y.dimension && x.format == y.format;
+                             capacity(a, x) == capacity(b, y) && x.dimension == y.dimension && x.format == y.format;
                     });
 }
 
@@ -95,23 +95,25 @@ void check(const TextureDesc& desc, const DeviceInfo& device) {
   if (desc.dimension == TextureDimension::cube || desc.dimension == TextureDimension::cube_array) {
     require(desc.size[0] == desc.size[1], desc.label, "the faces of a cube are not square");
     require(desc.dimension == TextureDimension::cube ? desc.size[2] == 6 : desc.size[2] % 6 == 0, desc.label,
-            to_string(desc.size[2]) + " layers, where a cube has 6");
+            to_string(desc.size[2]) + " layers, where each cube has 6");
   }
   require(desc.level_count > 0, desc.label, "a texture needs at least one level");
   require_limit(desc.level_count, full_level_count(desc), desc.label, "levels of a texture of this size");
 }
 
 void check(const SamplerDesc& desc) {
-  require(std::isfinite(desc.lod_bias) && desc.min_lod <= desc.max_lod, desc.label,
-          "a sampler whose smallest level of detail is above its largest, or whose bias is no number");
+  require(std::isfinite(desc.lod_bias), desc.label, "the bias of a sampler's level of detail is no number");
+  require(desc.min_lod <= desc.max_lod, desc.label, "a sampler's smallest level of detail is above its largest");
   if (!desc.unnormalized_coordinates) return;
   const auto clamps = [](AddressMode mode) {
     return mode == AddressMode::clamp_to_edge || mode == AddressMode::clamp_to_border;
   };
-  require(desc.magnification == desc.minification && desc.mipmap == Filter::nearest && desc.min_lod == 0 &&
-              desc.max_lod == 0 && clamps(desc.address[0]) && clamps(desc.address[1]) && !desc.compare,
-          desc.label,
-          "a sampler with unnormalised coordinates has equal filters, no levels, clamped addresses and no comparison");
+  require(
+      desc.magnification == desc.minification && desc.mipmap == Filter::nearest && desc.min_lod == 0 &&
+          desc.max_lod == 0 && clamps(desc.address[0]) && clamps(desc.address[1]) && !desc.compare,
+      desc.label,
+      "a sampler with unnormalised coordinates has equal filters, min_lod and max_lod 0, clamped addresses of u and v, "
+      "and no comparison");
 }
 
 void check(const DispatchDesc& desc, const DeviceInfo& device) {

@@ -9,9 +9,16 @@
 #include "rhi_cpu/kernel/texels.hpp"
 #include "rhi_cpu/kernel/types.hpp"
 
-/// Storage images and storage texel buffers: level 0 of a kernel::Image. A texel outside of the image reads as zero and
-/// is not written.
+/// Storage images and storage texel buffers: level 0 of a kernel::Image. A texel outside of the image reads as
+/// nothing_of() and is not written.
 namespace tandem::kernel {
+
+/// What is read outside of an image: zeros, as a texel of its format has them, so alpha is 1 where the format lacks it
+/// (Vulkan's robustImageAccess2).
+template <typename C>
+inline glm::vec<4, C> nothing_of(std::uint32_t format) {
+  return glm::vec<4, C>(C(0), C(0), C(0), texel_layouts[format].components < 4 ? C(1) : C(0));
+}
 
 /// What a shader declares an image as: rhi::TextureDimension. A texel buffer is d1.
 enum class Shape : std::uint32_t { d1, d2, d3, cube, d1_array, d2_array, cube_array };
@@ -42,7 +49,8 @@ inline std::byte* texel_at(const Image* image, const Coordinate& coordinate, std
 template <typename C, TexelFormat format, typename Coordinate>
 inline glm::vec<4, C> image_load(const Image* image, const Coordinate& coordinate) {
   const std::byte* texel = texel_at(image, coordinate, texel_bytes<format>(image));
-  if (texel == nullptr) return glm::vec<4, C>(C(0));
+  if (texel == nullptr)
+    return nothing_of<C>(format == TexelFormat::of_the_image ? image->format : static_cast<std::uint32_t>(format));
   if constexpr (format == TexelFormat::of_the_image)
     return decoders<C>[image->format](texel);
   else

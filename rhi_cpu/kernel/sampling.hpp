@@ -118,7 +118,7 @@ inline Place place_of(const Image& image, const Lookup& lookup) {
   if (lookup.has_gradients) place.detail = detail_of_gradients(image, sides_of(shape), dx, dy);
   if constexpr (is_layered(shape)) {
     const std::uint32_t layers = image.size[shape == Shape::d1_array ? 1 : 2] / (is_cube(shape) ? 6u : 1u);
-    const float last = static_cast<float>(layers) - 1.0f;
+    const float last = layers == 0 ? 0.0f : static_cast<float>(layers) - 1.0f;  // 0: an image that stands for none
     place.layer = static_cast<int>(kernel::clamp(kernel::round_even(lookup.layer), 0.0f, last));
   }
   if constexpr (is_cube(shape)) place.layer *= 6;
@@ -294,13 +294,13 @@ template <Shape shape>
   });
 }
 
-/// texelFetch: the texel at an integer coordinate, zero outside of the image and its levels.
+/// texelFetch: the texel at an integer coordinate; outside of the image and its levels nothing_of().
 template <typename C, typename Coordinate>
 inline glm::vec<4, C> fetch(const Image* image, const Coordinate& coordinate, std::uint32_t level = 0,
                             const ivec3& shift = ivec3(0)) {
   const uvec3 at(widened<ivec3>(coordinate) + shift);
   const uvec3 size = level_size(image, level);
-  if (at.x >= size.x || at.y >= size.y || at.z >= size.z) return glm::vec<4, C>(C(0));
+  if (at.x >= size.x || at.y >= size.y || at.z >= size.z) return nothing_of<C>(image->format);
   return Level<C>(*image, level)[ivec3(at)];
 }
 

@@ -16,6 +16,10 @@ class LaunchWatch {
 
   /// For kernel::Dispatch::watch. Its look throws once the time is over.
   const kernel::Watch* watch() const noexcept { return &watch_.watch; }
+  /// To be called now and then between invocations: short ones do not look. Throws rhi::Error(timeout) as kernels do.
+  void look() const {
+    if (limit_.count() > 0) look(watch_.watch);
+  }
   /// To be called when the launch has ended: Embree keeps exceptions that pass through it to itself. Throws
   /// rhi::Error(timeout) where a look has thrown.
   void check() const;

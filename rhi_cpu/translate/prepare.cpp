@@ -86,6 +86,17 @@ void check_folded(std::span<const std::uint32_t> spirv, const std::string& label
   });
 }
 
+/// A constant may have become the length of an array; the validator has only seen its default.
+void check_lengths(std::span<const std::uint32_t> spirv, const std::string& label) {
+  std::unordered_map<std::uint32_t, std::uint32_t> constants;
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    if (operation_of(i) == spv::OpConstant) constants[i[2]] = i[3];
+    if (operation_of(i) != spv::OpTypeArray || !constants.contains(i[3])) return;
+    const auto length = static_cast<std::int32_t>(constants[i[3]]);
+    if (length <= 0) fail(label, fmt::format("an array is specialised to a length of {}", length));
+  });
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const std::string& label,
@@ -95,6 +106,7 @@ std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const s
   rhi::check_spirv(spirv, label);
   std::vector<std::uint32_t> words = specialize(spirv, label, specialization);
   check_folded(words, label);
+  check_lengths(words, label);
   for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {
     if (operation_of(i) == spv::OpUndef) i[0] = 3u << 16 | spv::OpConstantNull;
   });

@@ -67,11 +67,20 @@ std::string Printer::guarded_pointer(std::uint32_t type_id, const Address& addre
 }
 
 std::string Printer::index_inside(const Type& type, const std::string& index) const {
-  if (!options_.robust || !is_array(type)) return index;
-  return fmt::format("k::index_inside({}, std::size_t({}))", array_length(type), index);
+  // A vector's own operator stays inside of it.
+  const bool is_matrix = !is_array(type) && type.columns > 1;
+  if (!options_.robust || (!is_array(type) && !is_matrix)) return index;
+  return fmt::format("k::index_inside({}, std::size_t({}))", is_matrix ? type.columns : array_length(type), index);
 }
 
 std::string Printer::descriptor_count(std::uint32_t variable) const {
+  if (get<spirv_cross::SPIRVariable>(variable).parameter != nullptr) {
+    std::uint32_t count = 1;
+    for (const Type* type = &get<Type>(pointee(get<spirv_cross::SPIRVariable>(variable).basetype)); is_array(*type);
+         type = &get<Type>(type->parent_type))
+      count *= array_length(*type);
+    return std::to_string(count);
+  }
   const rhi::ShaderBinding* binding = binding_of(variable);
   if (binding == nullptr) return "0";
   if (binding->count != 0) return std::to_string(binding->count);

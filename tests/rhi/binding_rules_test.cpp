@@ -171,6 +171,22 @@ TEST_CASE("bind groups: an array without a length has as many elements as the pi
   check_rule(broken_rule(desc), "has 5 elements, so there is no element 5");
 }
 
+TEST_CASE("dispatches: a group of another length of the arrays without one does not fit") {
+  const std::string declarations = "layout(binding = 0) uniform Numbers { vec4 number; } numbers[];";
+  const std::string uses = "numbers[gl_LaunchIDEXT.x].number";
+  rhi::BindGroupDesc five = group_for(declarations, uses, 5);
+  const rhi::BindGroupDesc six = group_for(declarations, uses, 6);
+  five.entries = {{.binding = 0, .resource = rhi::BufferRange{plain_buffer(16, rhi::BufferUsage::uniform)}}};
+  rhi::ShaderTableDesc table;
+  table.pipeline = std::static_pointer_cast<rhi::RayTracingPipeline>(six.pipeline);
+  table.ray_generation.records.resize(1);
+  rhi::TraceRaysDesc trace;
+  trace.table = plain_table(table);
+  trace.bind_groups = {plain_bind_group(five)};
+  CHECK_THROWS_WITH_AS(rhi::validation::check(trace, able_device()),
+                       doctest::Contains("was made for other bindings of set 0"), rhi::Error);
+}
+
 TEST_CASE("pipelines: an array without a length needs a device that has them") {
   rhi::DeviceInfo device = able_device();
   device.capabilities.unsized_arrays = false;

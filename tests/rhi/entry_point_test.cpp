@@ -86,3 +86,14 @@ TANDEM_DEVICE_TEST("every reason why a shader cannot run is told, and none where
   CHECK((reasons[0].find("Tessellation") != std::string::npos || reasons[0].find("capability 3") != std::string::npos));
   CHECK((reasons[1].find("Geometry") != std::string::npos || reasons[1].find("capability 2") != std::string::npos));
 }
+
+TANDEM_DEVICE_TEST("an array of descriptors cannot be sized by a constant that a pipeline may set") {
+  CHECK_ERROR(unsupported, "B has a specialisation constant as its length",
+              test::compute_pipeline(device, R"(#version 460
+layout(local_size_x = 1) in;
+layout(constant_id = 0) const int N = 2;
+layout(binding = 0) buffer B { float b[]; } t[N];
+void main() { t[0].b[0] = 1; }
+)",
+                                     "sized"));
+}

@@ -105,6 +105,35 @@ void main() {
   CHECK(std::vector<std::byte>{bytes[0], bytes[4], bytes[8], bytes[12]} == std::vector<std::byte>(4, std::byte{5}));
 }
 
+TANDEM_DEVICE_TEST("what lies outside of an image has the alpha of its format") {
+  const auto texture = [&](rhi::TextureFormat format) {
+    return device.create_texture({.format = format, .size = {2, 2, 1}, .label = "texels"});
+  };
+  const rhi::SamplerHandle sampler = device.create_sampler({.label = "nearest"});
+  rhi::SampledTexture sampled;
+  sampled.view.texture = texture(rhi::TextureFormat::rg16_float);
+  sampled.sampler = sampler;
+  const Words seen = answers(device, R"(
+layout(local_size_x = 1) in;
+layout(binding = 0) buffer Answers { vec4 answers[3]; };
+layout(binding = 1, r32f) uniform image2D one;
+layout(binding = 2, rgba8) uniform image2D four;
+layout(binding = 3) uniform sampler2D two;
+layout(push_constant) uniform Constants { int x; };
+void main() {
+  answers[0] = imageLoad(one, ivec2(x, 0));
+  answers[1] = imageLoad(four, ivec2(0, x));
+  answers[2] = texelFetch(two, ivec2(x, 0), 0);
+})",
+                             12,
+                             {{.binding = 1, .resource = texture(rhi::TextureFormat::r32_float)},
+                              {.binding = 2, .resource = texture(rhi::TextureFormat::rgba8_unorm)},
+                              {.binding = 3, .resource = sampled}},
+                             {2});
+  constexpr std::uint32_t one = 0x3f800000;
+  CHECK(seen == Words{0, 0, 0, one, 0, 0, 0, 0, 0, 0, 0, one});
+}
+
 TANDEM_DEVICE_TEST("a shader's own arrays and vectors take no index outside of them") {
   // What is read is undefined; the process goes on.
   const Words seen = answers(device, R"(
@@ -114,8 +143,10 @@ layout(push_constant) uniform Constants { int far; };
 void main() {
   uint own[4] = uint[](1, 2, 3, 4);
   uvec3 three = uvec3(1, 2, 3);
+  mat4 matrix = mat4(1);
   own[far] = own[far] + three[far];
-  answers[0] = own[2] + own[far];
+  matrix[far] = vec4(own[far]);
+  answers[0] = own[2] + own[far] + uint(matrix[far].x);
   answers[1] = 42;
 })",
                              2, {}, {0x00ffffff});

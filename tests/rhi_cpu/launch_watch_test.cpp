@@ -72,6 +72,25 @@ void main() {
   CHECK(run(*device, loops, {0, 0, 5, 0}) == ended);
 }
 
+TEST_CASE("a launch of many short invocations is stopped too") {
+  const rhi::DeviceHandle device = limited_device();
+  const rhi::ComputePipelineHandle pipeline = device->create_compute_pipeline(
+      {.shader = module_of(*device, rhi::ShaderStage::compute, R"(layout(local_size_x = 64) in;
+layout(binding = 0) buffer B { uint b[4]; };
+void main() { for (uint i = 0; i < 40; ++i) atomicAdd(b[i & 3], i); })"),
+       .specialization = {},
+       .label = "short"});
+  const rhi::BufferHandle buffer = rhi::create_filled(*device, Words(4), rhi::BufferUsage::storage, "words");
+  const rhi::CommandListHandle list = device->create_command_list("short");
+  list->dispatch(
+      {.pipeline = pipeline,
+       .bind_groups = {device->create_bind_group({.pipeline = pipeline,
+                                                  .entries = {{.binding = 0, .resource = rhi::BufferRange{buffer}}},
+                                                  .label = "group"})},
+       .workgroup_count = {65535, 65535, 1}});
+  CHECK_THROWS_WITH_AS(device->submit(list), doctest::Contains("short: it ran for more than the 50 ms"), rhi::Error);
+}
+
 TEST_CASE("endless loops of ray tracing shaders are stopped, also in the middle of a traversal") {
   const rhi::DeviceHandle device = limited_device();
   const auto shader = [&](rhi::ShaderStage stage, const std::string& glsl) {

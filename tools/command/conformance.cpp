@@ -127,8 +127,8 @@ int run_kit(const Options& options) {
 }  // namespace
 
 void add_conformance_command(CLI::App& app, Action& action) {
-  CLI::App* const command =
-      app.add_subcommand("conformance", "Check the ray tracing behaviour of a device, one case per behaviour");
+  CLI::App* const command = app.add_subcommand(
+      "conformance", "Check what a device does with shaders, images and rays, one case per behaviour");
   const auto options = std::make_shared<Options>();
   add_devices(*command, options->devices, "Devices to check [all]");
   command

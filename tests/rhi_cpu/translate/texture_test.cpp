@@ -166,13 +166,13 @@ TEST_CASE("fetches and sizes of every dimension and level") {
   CHECK(result[4] == Row{2, 4, 4, 4});
   CHECK(result[5] == Row{2, 2, 4, 3});
   CHECK(result[6] == Row{2, 2, 2, 3});
-  CHECK(result[7] == Row{64, 3, 0, 0});
+  CHECK(result[7] == Row{64, 3, 0, 1});
   CHECK(result[8] == Row{2, 5, 0, 1});
   CHECK(result[9] == Row{7, 19, 17, 0});
-  CHECK(result[10] == Row{63, 69, 0, 0});
+  CHECK(result[10] == Row{63, 69, 0, 1});
   CHECK(result[11] == Row{23, 0, 79, 0});
   CHECK(result[12] == Row{0, 0, 0, 1});
-  CHECK(result[13] == Row{0, 0, 0, 0});
+  CHECK(result[13] == Row{0, 0, 0, 1});
   CHECK(result[14] == Row{15, 71, 26, 72});
   CHECK(result[15] == Row{4, 5, 1, 0});
 }
