@@ -58,6 +58,19 @@ TextureDimension dimension_of(const spirv_cross::SPIRType::ImageType& image, con
   }
 }
 
+ComponentKind component_of(const spirv_cross::SPIRType& type) {
+  switch (type.basetype) {
+    case spirv_cross::SPIRType::Int:
+    case spirv_cross::SPIRType::Int64:
+      return ComponentKind::sint;
+    case spirv_cross::SPIRType::UInt:
+    case spirv_cross::SPIRType::UInt64:
+      return ComponentKind::uint;
+    default:
+      return ComponentKind::floating;
+  }
+}
+
 std::optional<TextureFormat> format_of(spv::ImageFormat format, const std::string& name, std::string_view label) {
   switch (format) {
     case spv::ImageFormatUnknown:
@@ -244,6 +257,8 @@ class Reflector {
       const spirv_cross::SPIRType::ImageType& image = compiler_.get_type(resource.base_type_id).image;
       ShaderBinding binding = binding_of(resource, image.dim == spv::DimBuffer ? of_buffers : kind);
       binding.dimension = dimension_of(image, resource.name, label_);
+      binding.component = component_of(compiler_.get_type(image.type));
+      binding.compares = kind == BindingKind::combined_image_sampler && image.depth;
       if (kind == BindingKind::storage_image) {
         binding.writable = !compiler_.has_decoration(resource.id, spv::DecorationNonWritable);
         binding.format = format_of(image.format, resource.name, label_);

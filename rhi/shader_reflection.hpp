@@ -34,6 +34,9 @@ struct ShaderBinding {
   BindingKind kind = BindingKind::storage_buffer;
   bool writable = false;                              ///< a storage buffer, image or texel buffer without NonWritable
   TextureDimension dimension = TextureDimension::d2;  ///< of an image
+  /// Of an image or texel buffer: what the components of its texels are read as; unorm, snorm and depth are floating.
+  ComponentKind component = ComponentKind::floating;
+  bool compares = false;  ///< a sampled image with which a sampler compares: sampler2DShadow
   /// Of a storage image or storage texel buffer; absent where the shader names none.
   std::optional<TextureFormat> format;
   std::string name;

@@ -36,6 +36,20 @@ void check_bound_buffer(const BufferRange& range, BindingKind kind, std::string_
           what + " has " + to_string(range.resolved_size()) + " bytes, more than the device's " + to_string(limit));
 }
 
+/// The kind of the format's components is the one that the shader reads.
+void check_components(TextureFormat format, const ShaderBinding& binding, std::string_view label,
+                      const std::string& what) {
+  const auto read_as = [](ComponentKind kind) {
+    const bool is_integer = kind == ComponentKind::uint || kind == ComponentKind::sint;
+    return is_integer ? kind : ComponentKind::floating;
+  };
+  const char* const wanted = binding.component == ComponentKind::uint   ? "unsigned integers"
+                             : binding.component == ComponentKind::sint ? "signed integers"
+                                                                        : "floats";
+  require(read_as(info_of(format).kind) == binding.component, label,
+          what + " has the format " + std::string(info_of(format).name) + ", where the shader reads " + wanted);
+}
+
 void check_texel_buffer(const TexelBuffer& texels, const ShaderBinding& binding, std::string_view label,
                         const std::string& what, const DeviceInfo& device) {
   const bool is_storage = binding.kind == BindingKind::storage_texel_buffer;
@@ -53,6 +67,7 @@ void check_texel_buffer(const TexelBuffer& texels, const ShaderBinding& binding,
                 "texels of a buffer");
   require(!binding.format || *binding.format == texels.format, label,
           what + ": the format is " + std::string(format.name) + " where the shader has another");
+  check_components(texels.format, binding, label, what);
   const FormatSupport& support = device.formats[static_cast<std::size_t>(texels.format)];
   if (!(is_storage ? support.storage_texel_buffer : support.uniform_texel_buffer))
     throw Error(ErrorCode::unsupported, label,
@@ -112,6 +127,7 @@ void check_bound_texture(const TextureView& view, const ShaderBinding& binding, 
   require(!is_storage || whole.level_count == 1, label, texture + ": a storage image is one level");
   require(!binding.format || *binding.format == desc.format, label,
           texture + " has another format than the image in the shader");
+  check_components(desc.format, binding, label, texture);
   const FormatSupport& support = device.formats[static_cast<std::size_t>(desc.format)];
   if (!(is_storage ? support.storage : support.sampled))
     throw Error(ErrorCode::unsupported, label,
@@ -120,8 +136,8 @@ void check_bound_texture(const TextureView& view, const ShaderBinding& binding, 
 }
 
 /// What VkSampler says of the image that it reads.
-void check_sampled(const SampledTexture& sampled, std::string_view label, const std::string& what,
-                   const DeviceInfo& device) {
+void check_sampled(const SampledTexture& sampled, const ShaderBinding& binding, std::string_view label,
+                   const std::string& what, const DeviceInfo& device) {
   require(sampled.sampler != nullptr, label, what + " names no sampler");
   const SamplerDesc& sampler = sampled.sampler->desc();
   const TextureDesc& desc = sampled.view.texture->desc();
@@ -131,6 +147,9 @@ void check_sampled(const SampledTexture& sampled, std::string_view label, const 
     throw Error(ErrorCode::unsupported, label,
                 what + ": device '" + device.name + "' filters no images of the format " +
                     std::string(info_of(desc.format).name));
+  require(sampler.compare.has_value() == binding.compares, label,
+          what + ": the sampler '" + sampler.label + (binding.compares ? "' does not compare" : "' compares") +
+              ", where the shader " + (binding.compares ? "wants that" : "does not want it"));
   require(!sampler.compare || info_of(desc.format).kind == ComponentKind::depth, label,
           what + ": a sampler that compares needs a texture of a depth format");
   const ResolvedView view = resolved(sampled.view, false);
@@ -156,7 +175,7 @@ void check_resource(const BoundResource& resource, const ShaderBinding& binding,
     require(binding.kind == BindingKind::combined_image_sampler, label,
             what + " is not an image with its sampler in the shader");
     check_bound_texture(sampled->view, binding, label, what, device);
-    return check_sampled(*sampled, label, what, device);
+    return check_sampled(*sampled, binding, label, what, device);
   }
   require(binding.kind == BindingKind::storage_image || binding.kind == BindingKind::sampled_image, label,
           what + " is not a storage image in the shader, nor an image without a sampler");

@@ -118,14 +118,33 @@ TEST_CASE("bind groups: images with their samplers") {
   device.formats[static_cast<std::size_t>(TextureFormat::rgba8_unorm)].filtered = false;
   check_rule(rule(picture, linear, device), "device 'able' filters no images of the format rgba8_unorm");
   CHECK(rule(picture, {.label = "nearest"}, device) == "");
-  check_rule(rule(picture, {.compare = rhi::CompareOp::less, .label = "compares"}),
-             "needs a texture of a depth format");
+  check_rule(rule(picture, {.compare = rhi::CompareOp::less, .label = "c"}),
+             "the sampler 'c' compares, where the shader does not want it");
+  const rhi::TextureHandle integers = texture(TextureDimension::d2, {8, 8, 1}, 1, TextureFormat::rgba8_uint);
+  check_rule(rule(integers, {.label = "nearest"}), "has the format rgba8_uint, where the shader reads floats");
   check_rule(rule(picture, {.unnormalized_coordinates = true, .label = "texels"}), "needs one level");
   check_rule(rule(nullptr, linear), "names no texture");
   desc.entries = {{.binding = 0, .resource = picture}};
   check_rule(broken_rule(desc), "is not a storage image in the shader, nor an image without a sampler");
   desc.entries = {{.binding = 0, .resource = plain_sampler(linear)}};
   check_rule(broken_rule(desc), "is not a sampler in the shader");
+}
+
+TEST_CASE("bind groups: shadow samplers compare, on textures of depths") {
+  rhi::BindGroupDesc desc =
+      group_for("layout(binding = 0) uniform sampler2DShadow image;", "vec4(textureLod(image, vec3(0), 0))");
+  const auto rule = [&](TextureFormat format, const rhi::SamplerDesc& sampler) {
+    rhi::SampledTexture sampled;
+    sampled.view.texture = texture(TextureDimension::d2, {8, 8, 1}, 1, format);
+    sampled.sampler = plain_sampler(sampler);
+    desc.entries = {{.binding = 0, .resource = sampled}};
+    return broken_rule(desc);
+  };
+  const rhi::SamplerDesc compares = {.compare = rhi::CompareOp::less, .label = "c"};
+  CHECK(rule(TextureFormat::d32_float, compares) == "");
+  check_rule(rule(TextureFormat::d32_float, {.label = "p"}),
+             "the sampler 'p' does not compare, where the shader wants that");
+  check_rule(rule(TextureFormat::r32_float, compares), "needs a texture of a depth format");
 }
 
 TEST_CASE("bind groups: texel buffers") {
@@ -140,8 +159,9 @@ TEST_CASE("bind groups: texel buffers") {
   check_rule(rule(64, storage, TextureFormat::rgba32_float), "lacks the usage uniform_texels");
   check_rule(rule(63, uniform_texels, TextureFormat::rgba32_float), "63 bytes, which are no whole texels");
   rhi::DeviceInfo device = able_device();
-  device.formats[static_cast<std::size_t>(TextureFormat::r8_uint)].uniform_texel_buffer = false;
-  check_rule(rule(64, uniform_texels, TextureFormat::r8_uint, device), "no texel buffers of the format r8_uint");
+  device.formats[static_cast<std::size_t>(TextureFormat::r8_unorm)].uniform_texel_buffer = false;
+  check_rule(rule(64, uniform_texels, TextureFormat::r8_uint), "has the format r8_uint, where the shader reads floats");
+  check_rule(rule(64, uniform_texels, TextureFormat::r8_unorm, device), "no texel buffers of the format r8_unorm");
   desc.entries = {{.binding = 0, .resource = rhi::BufferRange{plain_buffer(64, storage)}}};
   check_rule(broken_rule(desc), "is not a buffer in the shader");
 }
