@@ -56,6 +56,20 @@ Features queried(const vk::raii::PhysicalDevice& device) {
   return features;
 }
 
+/// Calls visit(extension, features) for the features of each extension.
+template <typename Visit>
+void for_each_extension(EnabledFeatures& enabled, const Visit& visit) {
+  visit(VK_KHR_RAY_QUERY_EXTENSION_NAME, enabled.ray_query);
+  visit(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, enabled.ray_tracing_pipeline);
+  visit(VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME, enabled.ray_tracing_maintenance1);
+  visit(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, enabled.robustness2);
+  visit(VK_KHR_SHADER_CLOCK_EXTENSION_NAME, enabled.shader_clock);
+  visit(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME, enabled.atomic_float);
+  visit(VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME, enabled.atomic_float2);
+  visit(VK_EXT_SHADER_IMAGE_ATOMIC_INT64_EXTENSION_NAME, enabled.image_atomic_int64);
+  visit(VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME, enabled.explicit_workgroup_layout);
+}
+
 /// The features of extensions, wherever one is offered: a driver need not know the structure otherwise.
 void take_extensions(EnabledFeatures& enabled, const vk::raii::PhysicalDevice& device) {
   const std::vector<vk::ExtensionProperties> extensions = device.enumerateDeviceExtensionProperties();
@@ -65,15 +79,7 @@ void take_extensions(EnabledFeatures& enabled, const vk::raii::PhysicalDevice& d
         }))
       features = queried<Features>(device);
   };
-  take_if(VK_KHR_RAY_QUERY_EXTENSION_NAME, enabled.ray_query);
-  take_if(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, enabled.ray_tracing_pipeline);
-  take_if(VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME, enabled.ray_tracing_maintenance1);
-  take_if(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, enabled.robustness2);
-  take_if(VK_KHR_SHADER_CLOCK_EXTENSION_NAME, enabled.shader_clock);
-  take_if(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME, enabled.atomic_float);
-  take_if(VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME, enabled.atomic_float2);
-  take_if(VK_EXT_SHADER_IMAGE_ATOMIC_INT64_EXTENSION_NAME, enabled.image_atomic_int64);
-  take_if(VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME, enabled.explicit_workgroup_layout);
+  for_each_extension(enabled, take_if);
   // Only for captures, and slow.
   enabled.ray_tracing_pipeline.rayTracingPipelineShaderGroupHandleCaptureReplay = VK_FALSE;
   enabled.ray_tracing_pipeline.rayTracingPipelineShaderGroupHandleCaptureReplayMixed = VK_FALSE;
@@ -159,15 +165,7 @@ vk::raii::Device create_logical_device(const vk::raii::PhysicalDevice& device, c
   chain(chained.vulkan11);
   chain(chained.vulkan12);
   if (enabled.has_vulkan13) chain(chained.vulkan13);
-  chain_if(VK_KHR_RAY_QUERY_EXTENSION_NAME, chained.ray_query);
-  chain_if(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, chained.ray_tracing_pipeline);
-  chain_if(VK_KHR_RAY_TRACING_MAINTENANCE_1_EXTENSION_NAME, chained.ray_tracing_maintenance1);
-  chain_if(VK_EXT_ROBUSTNESS_2_EXTENSION_NAME, chained.robustness2);
-  chain_if(VK_KHR_SHADER_CLOCK_EXTENSION_NAME, chained.shader_clock);
-  chain_if(VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME, chained.atomic_float);
-  chain_if(VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME, chained.atomic_float2);
-  chain_if(VK_EXT_SHADER_IMAGE_ATOMIC_INT64_EXTENSION_NAME, chained.image_atomic_int64);
-  chain_if(VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME, chained.explicit_workgroup_layout);
+  for_each_extension(chained, chain_if);
 
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue = {

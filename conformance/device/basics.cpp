@@ -7,22 +7,16 @@
 #include "conformance/kit/cases.hpp"
 #include "conformance/kit/check.hpp"
 #include "conformance/kit/scene.hpp"
+#include "conformance/kit/shader_run.hpp"
 
 /// device.buffers and device.compute: what every other case stands on. They need no capability.
 namespace tandem::conformance {
 namespace {
 
-using Words = std::vector<std::uint32_t>;
-
 Words counted(std::uint32_t count, std::uint32_t first = 0) {
   Words words(count);
   std::iota(words.begin(), words.end(), first);
   return words;
-}
-
-void check_words(const Words& seen, const Words& expected) {
-  check_equal("the number of words", seen.size(), expected.size());
-  for (std::size_t i = 0; i < seen.size(); ++i) check_equal(fmt::format("word {}", i), seen[i], expected[i]);
 }
 
 void submit(rhi::Device& device, const std::function<void(rhi::CommandList&)>& record) {

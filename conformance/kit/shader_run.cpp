@@ -40,7 +40,7 @@ rhi::BufferHandle words_buffer(rhi::Device& device, const Words& words, const st
   return rhi::create_filled(device, words, rhi::BufferUsage::storage, label);
 }
 
-void check_words(std::span<const std::uint32_t> seen, std::span<const std::uint32_t> expected) {
+void check_words(const Words& seen, const Words& expected) {
   check_equal("the number of words", seen.size(), expected.size());
   for (std::size_t i = 0; i < seen.size(); ++i) check_equal(fmt::format("word {}", i), seen[i], expected[i]);
 }

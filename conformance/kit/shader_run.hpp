@@ -34,6 +34,6 @@ std::vector<float> floats_of(std::span<const std::uint32_t> words);
 rhi::BufferHandle words_buffer(rhi::Device& device, const Words& words, const std::string& label);
 
 /// Throws Failure, naming the first word that is another.
-void check_words(std::span<const std::uint32_t> seen, std::span<const std::uint32_t> expected);
+void check_words(const Words& seen, const Words& expected);
 
 }  // namespace tandem::conformance

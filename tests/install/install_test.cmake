@@ -92,6 +92,7 @@ function(check_components components)
 endfunction()
 set(scene_packages TinyGLTF tinyobjloader ZLIB tinyexr PNG)
 check_components("devices;glsl;rhi" ${scene_packages})
+check_components("devices" ${scene_packages} glslang nlohmann_json)
 check_components("rhi" ${scene_packages} Vulkan TBB embree glslang spirv_cross_glsl nlohmann_json glm)
 
 # A component that does not exist is an error that names it.
