@@ -1,11 +1,21 @@
 #include "rhi_cpu/sampler.hpp"
 
+#include <cstdint>
 #include <utility>
 
 namespace tandem::cpu {
 namespace {
 
-/// Both sides have Vulkan's numbers.
+/// Both sides have Vulkan's numbers: kernels know nothing of the rhi.
+template <typename A, typename B>
+constexpr bool are_equal(A a, B b) {
+  return static_cast<std::uint32_t>(a) == static_cast<std::uint32_t>(b);
+}
+static_assert(are_equal(rhi::Filter::linear, kernel::Filter::linear));
+static_assert(are_equal(rhi::AddressMode::mirror_clamp_to_edge, kernel::AddressMode::mirror_clamp_to_edge));
+static_assert(are_equal(rhi::CompareOp::always, kernel::CompareOp::always));
+static_assert(are_equal(rhi::BorderColor::int_opaque_white, kernel::BorderColor::int_opaque_white));
+
 kernel::Sampler view_of(const rhi::SamplerDesc& desc) {
   kernel::Sampler sampler;
   sampler.magnification = static_cast<kernel::Filter>(desc.magnification);
