@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 
 #include <fmt/format.h>
@@ -50,7 +51,7 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
                    const KernelOptions& options, const KernelCompiler& compiler) {
   ContentHasher hasher;
   hasher.add(std::uint64_t{kernel::abi_version}).add(std::uint64_t{translator_version});
-  hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched});
+  hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched}).add(std::uint64_t{options.lanes});
   for (const KernelHeader& header : kernel_headers()) hasher.add(header.path).add(header.text);
   hasher.add(compiler.path.string()).add(compiler.version);
   hasher.add(kernel_compile_options()).add(processor_identity());
@@ -66,14 +67,17 @@ KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, const Kerne
     : precompiled_(std::move(precompiled)),
       options_(options),
       cache_folder_(std::move(cache_folder)),
-      on_message_(std::move(on_message)) {}
+      on_message_(std::move(on_message)) {
+  if (const char* lanes = std::getenv("TANDEM_LANES")) options_.lanes = std::uint32_t(std::atoi(lanes));
+}
 
 Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> given,
                            const std::string& label) {
   const std::vector<rhi::SpecializationValue> values = complete(shader.reflection(), given);
   const auto found = std::ranges::find_if(
       precompiled_, [&](const PrecompiledKernel& kernel) { return is_made_of(kernel, shader, values); });
-  if (found != precompiled_.end() && !options_.watched) return {.info = found->entry(), .library = nullptr};
+  if (found != precompiled_.end() && !options_.watched && options_.lanes == 0)
+    return {.info = found->entry(), .library = nullptr};
 
   const ContentHash key = key_of(shader.spirv(), values, options_, compiler(label));
   const std::shared_ptr<Entry> known = entry(key);
@@ -89,8 +93,12 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
                                          std::span<const rhi::SpecializationValue> values, const ContentHash& key,
                                          const std::string& label) {
   const auto start = std::chrono::steady_clock::now();
-  const Translation translation = translate(
-      shader.spirv(), label, {.specialization = values, .robust = options_.robust, .watched = options_.watched});
+  const bool is_compute = shader.reflection().stage == rhi::ShaderStage::compute;
+  const Translation translation = translate(shader.spirv(), label,
+                                            {.specialization = values,
+                                             .robust = options_.robust,
+                                             .watched = options_.watched,
+                                             .lanes = is_compute ? options_.lanes : 0});
   KernelCache& store = cache();
   TemporaryFolder folder = store.make_work_folder(label);
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;

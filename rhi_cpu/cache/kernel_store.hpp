@@ -23,6 +23,7 @@ namespace tandem::cpu {
 struct KernelOptions {
   bool robust = false;
   bool watched = false;
+  std::uint32_t lanes = 0;
 };
 
 /// Native code that runs a shader.

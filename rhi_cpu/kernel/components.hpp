@@ -29,13 +29,14 @@ struct ComponentOf<glm::vec<length, T>> {
 template <typename T>
 using component_t = typename ComponentOf<T>::type;
 
-/// function(a, b...) for scalars; the vector of function(a[i], b[i]...) for vectors of one length.
+/// function(a, b...) for scalars; the vector of function(a[i], b[i]...) for vectors of one length. The wide form has
+/// its own for what is no scalar (kernel/wide/lanes.hpp).
 template <typename Function, typename A, typename... B>
 constexpr auto each(const Function& function, const A& a, const B&... b) {
   if constexpr (length_of<A> == 0) {
     return function(a, b...);
   } else {
-    const auto component = [&](int i) { return function(a[i], b[i]...); };
+    const auto component = [&](int i) { return each(function, a[i], b[i]...); };
     return [&]<int... i>(std::integer_sequence<int, i...>) {
       return glm::vec<length_of<A>, decltype(component(0))>(component(i)...);
     }

@@ -81,6 +81,32 @@ struct Instance {
   std::uint32_t sbt_offset;
 };
 
+/// The most rays of a packet.
+inline constexpr std::uint32_t packet_capacity = 16;
+
+/// Rays that are traced together, with the same flags and mask. Those whose bit in `active` is not set are not looked
+/// at.
+struct alignas(64) RayPacket {
+  float origin[3][packet_capacity];
+  float t_min[packet_capacity];
+  float direction[3][packet_capacity];
+  float t_max[packet_capacity];
+  std::uint32_t active;  ///< bit i: ray i is traced
+  std::uint32_t count;   ///< 4, 8 or 16: rays beyond it are not active
+  std::uint32_t flags;
+  std::uint32_t mask;
+};
+
+/// The hits of a packet's rays, of those that hit something.
+struct alignas(64) HitPacket {
+  float t[packet_capacity];
+  float barycentrics[2][packet_capacity];
+  std::uint32_t instance_index[packet_capacity];
+  std::uint32_t geometry_index[packet_capacity];
+  std::uint32_t primitive_index[packet_capacity];
+  std::uint32_t front_face;  ///< bit i: of ray i
+};
+
 struct TopLevel;
 
 /// All of them leave out what the ray's mask and flags cull (among them ray_flag_skip_triangles and
@@ -99,6 +125,10 @@ struct TraceFunctions {
   /// The closest of the opaque triangles and of what `visitor` commits; with ray_flag_terminate_on_first_hit any of
   /// them. False when there is none.
   bool (*visit)(const TopLevel& scene, const Ray& ray, const CandidateVisitor& visitor, Hit& committed);
+  /// `closest` and `occluded` of the rays of a packet. The bits of those that hit something are set in the result. Of
+  /// two triangles at the same distance a packet may find another one than a ray does.
+  std::uint32_t (*closest_of_packet)(const TopLevel& scene, const RayPacket& rays, HitPacket& hits);
+  std::uint32_t (*occluded_of_packet)(const TopLevel& scene, const RayPacket& rays);
 };
 
 /// A built top level as a kernel sees it; the backend derives its own from it. An acceleration structure's Resource

@@ -16,6 +16,8 @@ class Instruction {
   Instruction(spv::Op op, std::span<const std::uint32_t> words);
 
   spv::Op op() const { return op_; }
+  /// Whether it has a result with a type.
+  bool has_result() const { return words_.size() - operands_.size() == 2; }
   /// Ids, of an instruction that has a result.
   std::uint32_t result_type() const { return words_[0]; }
   std::uint32_t result() const { return words_[1]; }

@@ -77,6 +77,9 @@ int main(int argc, char** argv) {
   bool robust = false, watched = false;
   app.add_flag("--robust", robust, "keep accesses inside of what is bound, as devices with robust access do");
   app.add_flag("--watched", watched, "let loops look at a watch, as devices with a time limit do");
+  std::uint32_t lanes = 0;
+  app.add_option("--lanes", lanes, "invocations that the kernel runs at once (4, 8, 16 or 32); 0: one after the other")
+      ->check(CLI::IsMember({0, 4, 8, 16, 32}));
   app.add_option("--embed", embed, "write C++ that holds the SPIR-V words here");
   app.add_option("--namespace", name_space, "namespace of the embedded words")->capture_default_str();
   app.add_option("--name", name, "name of the function that returns the embedded words")->capture_default_str();
@@ -86,9 +89,12 @@ int main(int argc, char** argv) {
     if (!embed.empty()) write(embed, embedded_words(words, name_space, name));
     const std::vector<tandem::rhi::SpecializationValue> values = specialization(assignments);
     if (!kernel.empty())
-      write(kernel, tandem::cpu::translate(
-                        words, std::filesystem::path(input).filename().string(),
-                        {.specialization = values, .entry_symbol = entry_symbol, .robust = robust, .watched = watched})
+      write(kernel, tandem::cpu::translate(words, std::filesystem::path(input).filename().string(),
+                                           {.specialization = values,
+                                            .entry_symbol = entry_symbol,
+                                            .robust = robust,
+                                            .watched = watched,
+                                            .lanes = lanes})
                         .source);
   } catch (const std::exception& error) {
     fmt::print(stderr, "tandem-translate: {}\n", error.what());

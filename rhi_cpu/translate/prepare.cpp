@@ -1,5 +1,7 @@
 #include "rhi_cpu/translate/prepare.hpp"
 
+#include <algorithm>
+#include <cstdint>
 #include <unordered_map>
 
 #include <fmt/format.h>
@@ -97,6 +99,12 @@ void check_lengths(std::span<const std::uint32_t> spirv, const std::string& labe
   });
 }
 
+void replace_undefined(std::vector<std::uint32_t>& words) {
+  for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {
+    if (operation_of(i) == spv::OpUndef) i[0] = 3u << 16 | spv::OpConstantNull;
+  });
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const std::string& label,
@@ -107,9 +115,66 @@ std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const s
   std::vector<std::uint32_t> words = specialize(spirv, label, specialization);
   check_folded(words, label);
   check_lengths(words, label);
-  for_each_instruction(std::span(words), [](std::span<std::uint32_t> i) {
-    if (operation_of(i) == spv::OpUndef) i[0] = 3u << 16 | spv::OpConstantNull;
+  replace_undefined(words);
+  return words;
+}
+
+namespace {
+
+/// Instructions of a module whose functions are all inlined.
+std::uint64_t inlined_size(std::span<const std::uint32_t> spirv) {
+  struct Function {
+    std::uint64_t size = 0;
+    std::vector<std::uint32_t> calls;
+  };
+  std::unordered_map<std::uint32_t, Function> functions;
+  std::uint32_t entry = 0, current = 0;
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    if (operation_of(i) == spv::OpEntryPoint) entry = i[2];
+    if (operation_of(i) == spv::OpFunction) current = i[2];
+    if (current == 0) return;
+    ++functions[current].size;
+    if (operation_of(i) == spv::OpFunctionCall) functions[current].calls.push_back(i[3]);
   });
+  std::unordered_map<std::uint32_t, std::uint64_t> known;
+  const auto size_of = [&](const auto& self, std::uint32_t id) -> std::uint64_t {
+    if (const auto found = known.find(id); found != known.end()) return found->second;
+    std::uint64_t size = functions[id].size;
+    for (const std::uint32_t callee : functions[id].calls) size = std::min(size + self(self, callee), UINT64_MAX / 2);
+    return known[id] = size;
+  };
+  return size_of(size_of, entry);
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> with_values_for_variables(std::span<const std::uint32_t> spirv, const std::string& label) {
+  const auto values_for_variables = [](spvtools::Optimizer& optimizer) {
+    optimizer.RegisterPass(spvtools::CreateScalarReplacementPass(0));
+    optimizer.RegisterPass(spvtools::CreateLocalAccessChainConvertPass());
+    optimizer.RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass());
+    optimizer.RegisterPass(spvtools::CreateLocalSingleStoreElimPass());
+    optimizer.RegisterPass(spvtools::CreateSSARewritePass());
+    optimizer.RegisterPass(spvtools::CreateCCPPass());
+    optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass());
+    optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(true));
+  };
+  std::vector<std::uint32_t> words = optimize(spirv, label, values_for_variables);
+  // What is inlined has more values in place of variables, and more that all lanes have in common; too much of it takes
+  // the C++ compiler minutes.
+  constexpr std::uint64_t inlining_limit = 4000;
+  if (inlined_size(words) <= inlining_limit) {
+    words = optimize(words, label, [&](spvtools::Optimizer& optimizer) {
+      // Functions with early returns are not inlined.
+      optimizer.RegisterPass(spvtools::CreateMergeReturnPass());
+      optimizer.RegisterPass(spvtools::CreateInlineExhaustivePass());
+      optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+      optimizer.RegisterPass(spvtools::CreatePrivateToLocalPass());
+      values_for_variables(optimizer);
+      optimizer.RegisterPass(spvtools::CreateBlockMergePass());
+    });
+  }
+  replace_undefined(words);
   return words;
 }
 

@@ -20,6 +20,10 @@ std::vector<std::uint32_t> prepare(std::span<const std::uint32_t> spirv, const s
 /// Stands in the header of a loop where its rounds are counted. No module that prepare() returns has this instruction.
 inline constexpr spv::Op loop_mark = spv::OpLifetimeStart;
 
+/// The words of prepare() for the wide form: values and OpPhi in place of variables where that is possible, small
+/// modules with all functions inlined. No value changes by a bit.
+std::vector<std::uint32_t> with_values_for_variables(std::span<const std::uint32_t> spirv, const std::string& label);
+
 /// The words of prepare() with a loop_mark, without operands, in the header of each loop.
 std::vector<std::uint32_t> with_marked_loops(std::span<const std::uint32_t> spirv);
 

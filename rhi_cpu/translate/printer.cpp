@@ -41,6 +41,7 @@ std::string Printer::compile() {
   set_up_variables();
   set_up_endings();
   measure_functions();
+  if (is_wide()) analyze_uniformity();
 
   std::uint32_t passes = 0;
   do {
@@ -48,6 +49,8 @@ std::string Printer::compile() {
     buffer.reset();
     addresses_.clear();
     payloads_.clear();
+    printed_functions_.clear();
+    declared_phis_.clear();
     print_module();
   } while (is_forcing_recompilation());
   return buffer.str();
@@ -82,6 +85,18 @@ void Printer::set_up_names() {
                                        ? "entry_point"
                                        : fmt::format("function_{}_{}", name.substr(0, name.find('_')), id);
   });
+
+  // The wide form has names of its own beside the shader's.
+  if (is_wide()) {
+    const auto rename = [this](std::uint32_t id) {
+      std::string& alias = ir.meta[id].decoration.alias;
+      alias = (alias.starts_with('_') ? "own" : "own_") + alias;
+    };
+    ir.for_each_typed_id<SPIRFunction>([&](std::uint32_t, SPIRFunction& function) {
+      for (const std::uint32_t id : function.local_variables) rename(id);
+      for (const auto& parameter : function.arguments) rename(parameter.id);
+    });
+  }
 
   // Constants print by "name" everywhere, in SPIRV-Cross's own code too: scalars and vectors are their own literal,
   // larger ones are globals.
@@ -202,13 +217,21 @@ void Printer::print_module() {
     print();
     return buffer.str();
   };
-  const std::string functions =
-      printed([this] { emit_function(get<SPIRFunction>(ir.default_entry_point), spirv_cross::Bitset()); });
+  const std::string functions = printed([this] {
+    if (is_wide())
+      print_wide_functions(ir.default_entry_point);
+    else
+      emit_function(get<SPIRFunction>(ir.default_entry_point), spirv_cross::Bitset());
+  });
   const std::string constants = printed([this] { print_constants(); });
   const std::string memory = printed([this] { print_struct_memory_functions(); });
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
+  if (is_wide()) {
+    statement("#define TANDEM_LANES ", options_.lanes);
+    statement("#include \"rhi_cpu/kernel/wide/wide.hpp\"");
+  }
   if (has_halves()) statement("#include \"rhi_cpu/kernel/half.hpp\"");
   if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
@@ -252,9 +275,11 @@ void Printer::print_members() {
   } else {
     statement("const k::Resource* resources;");
     statement("const std::byte* push_constants;");
-    for (const char* built_in : {"NumWorkgroups", "WorkgroupId", "LocalInvocationId", "GlobalInvocationId"})
-      statement("k::uvec3 built_in_", built_in, ";");
-    statement("k::uint built_in_LocalInvocationIndex;");
+    const bool wide = is_wide();
+    for (const char* built_in : {"NumWorkgroups", "WorkgroupId"}) statement("k::uvec3 built_in_", built_in, ";");
+    for (const char* built_in : {"LocalInvocationId", "GlobalInvocationId"})
+      statement(wide ? "k::wide_t<k::uvec3>" : "k::uvec3", " built_in_", built_in, ";");
+    statement(wide ? "k::Lanes<k::uint>" : "k::uint", " built_in_LocalInvocationIndex;");
     if (options_.watched) statement("const k::Watch* watch;");
   }
   if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
@@ -262,8 +287,10 @@ void Printer::print_members() {
     if (variable.storage == spv::StorageClassPrivate) {
       const std::uint32_t type = pointee(variable.basetype);
       std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
+      mode_ = is_wide() ? Mode::wide : Mode::common;
       if (variable.initializer) initial = " = " + value(variable.initializer);
       statement(type_name(type), " ", to_name(id), initial, ";");
+      mode_ = Mode::common;
       return;
     }
     if (!has_decoration(id, spv::DecorationBinding) || binding_of(id) == nullptr) return;

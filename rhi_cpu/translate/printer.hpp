@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -20,6 +21,7 @@
 #include "rhi_cpu/translate/storage_classes.hpp"
 #include "rhi_cpu/translate/translate_options.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"
+#include "rhi_cpu/translate/wide/uniformity.hpp"
 
 namespace tandem::cpu {
 
@@ -70,6 +72,15 @@ class Printer : public spirv_cross::CompilerGLSL {
     std::uint32_t matrix_stride = 0;     ///< of the matrices there
     std::uint32_t component_stride = 0;  ///< of the vector there, 0: tight
     bool row_major = false;
+    bool varies = false;   ///< wide form: `bytes` are kernel::Addresses
+    bool by_lane = false;  ///< wide form: `bytes` and `resource` are of the lane `lane`
+  };
+
+  /// Wide form: what an instruction is printed for.
+  enum class Mode : std::uint8_t {
+    common,  ///< all lanes at once, with what they have in common; in the scalar form, everything
+    wide,    ///< all lanes at once, each with its own values
+    lane     ///< the lane `lane`
   };
 
   [[noreturn]] void fail(const std::string& what) const;
@@ -85,6 +96,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_members();
   void print_constants();
   void print_run();
+  void print_wide_run();
   void print_info();
   const rhi::ShaderBinding* binding_of(std::uint32_t variable) const;
   std::uint32_t first_resource_of(std::uint32_t variable) const;
@@ -92,7 +104,12 @@ class Printer : public spirv_cross::CompilerGLSL {
   // printer_types.cpp: names of types, structs, constants.
   std::string type_name(std::uint32_t type_id) { return type_name(get<Type>(type_id)); }
   std::string type_name(const Type& type);
+  /// The type of one lane's value.
+  std::string narrow_name(const Type& type);
+  std::string numbers_name(BaseType base, std::uint32_t length) const;
   std::string struct_name(const Type& type);
+  /// A struct and its twin, whose members have a value per lane.
+  std::string wide_struct(const std::string& name, const std::string& members, const Type& type);
   std::vector<std::string> member_names(const Type& type) const;
   std::uint32_t array_length(const Type& type) const;
   bool is_pointer(const Type& type) const { return cpu::is_pointer(*this, type); }
@@ -110,6 +127,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::uint32_t pointee(std::uint32_t pointer_type_id) const;
   std::uint32_t matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const;
   Address address_of(std::uint32_t pointer_id);
+  /// The memory that a pointer as a value leads to.
+  Address address_in(std::uint32_t pointer_id);
   std::string printed(const Address& address) const;
   void print_access_chain(const Instruction& i);
   void chain_in_buffer(const Instruction& i, Address address, std::size_t first_index);
@@ -173,6 +192,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   Instruction view(const spirv_cross::Instruction& instruction) const;
   /// The function for an instruction that operations.hpp does not have; null when there is none.
   static PrintFunction by_hand(spv::Op op);
+  void print_instruction(const Instruction& i);
   void print_nothing(const Instruction&) {}
   void print_line(const Instruction& i);
   void print_memory_barrier(const Instruction& i);
@@ -180,6 +200,8 @@ class Printer : public spirv_cross::CompilerGLSL {
 
   // printer_operations.cpp: everything that computes.
   void print_operation(const Instruction& i, const Operation& operation);
+  /// The mask as the first argument of a function, in lanes.
+  std::string lanes_argument() const;
   void print_infix(const Instruction& i, const Operation& operation);
   void print_prefix(const Instruction& i, const Operation& operation);
   void print_function(const Instruction& i, const Operation& operation);
@@ -209,6 +231,48 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_ignore_intersection(const Instruction& i);
   void print_terminate_ray(const Instruction& i);
   std::string traced_built_in(spv::BuiltIn built_in) const;
+
+  // printer_uniformity.cpp: which values the wide form keeps per lane.
+  bool is_wide() const { return options_.lanes != 0; }
+  std::vector<std::uint32_t> successors_of(std::uint32_t block_id) const;
+  WideFunction& wide_function(std::uint32_t function_id);
+  /// The variable or parameter that a pointer leads into.
+  std::uint32_t root_variable(std::uint32_t pointer_id) const;
+  void find_definitions(std::uint32_t function_id);
+  void analyze_uniformity();
+  /// True when something varies that was not known to.
+  bool update_uniformity(std::uint32_t function_id);
+
+  // printer_wide.cpp: instructions in the wide form.
+  bool varies(std::uint32_t id) const;
+  bool has_varying_contents(std::uint32_t pointer_id) const;
+  /// The value `text` of an operand as the mode wants it.
+  std::string in_mode(std::uint32_t id, std::string text);
+  void define_wide(std::uint32_t type_id, std::uint32_t id, const std::string& text);
+  /// Whether there is C++ for all lanes at once.
+  bool is_wide_operation(const Instruction& i);
+  void print_wide_instruction(const Instruction& i);
+  void print_by_lane(const Instruction& i, const std::function<void()>& print);
+  void print_wide_chain(const Instruction& i);
+  void keep_addresses(std::uint32_t id, Address& address);
+  void print_wide_load(const Instruction& i);
+  void print_wide_store(const Instruction& i);
+  void print_wide_call(const Instruction& i);
+
+  // printer_wide_flow.cpp: control flow in the wide form.
+  struct WidePrinting;
+  void print_wide_functions(std::uint32_t function_id);
+  void print_wide_prototype(std::uint32_t function_id);
+  void print_wide_function(std::uint32_t function_id);
+  void print_escaping(std::uint32_t id, int block_number);
+  void place_blocks(WidePrinting& printing);
+  void print_declarations(const WidePrinting& printing, const std::vector<int>& blocks);
+  void print_node(WidePrinting& printing, int block);
+  void print_child(WidePrinting& printing, int block);
+  /// @param condition of a uniform branch, "" without one
+  void print_edge(WidePrinting& printing, int from, int to, const std::string& mask, const std::string& condition);
+  void print_terminator(WidePrinting& printing, int block);
+  std::string case_text(const spirv_cross::SPIRBlock& block, std::uint64_t number);
 
   // printer_images.cpp: storage images, and descriptors as values.
   std::string texel_format(const Type& type) const;
@@ -295,6 +359,22 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_set<std::uint32_t> ending_functions_;               ///< a call to one may end the shader
   std::vector<std::pair<std::string, std::string>> payloads_;        ///< type and name of what is passed on
   std::string incoming_payload_type_;                                ///< "" without one
+
+  // The wide form.
+  struct Definition {
+    std::uint32_t function;
+    int block;
+  };
+  std::map<std::uint32_t, WideFunction> wide_functions_;
+  Uniformity uniformity_;
+  std::map<std::uint32_t, Definition> definitions_;  ///< of values
+  std::unordered_set<std::uint32_t> escapes_;        ///< values that are used outside of the loop that defines them
+  std::unordered_map<std::uint32_t, std::uint32_t> roots_;  ///< variable of a pointer
+  std::unordered_set<std::uint32_t> printed_functions_;
+  std::unordered_set<std::uint32_t> declared_phis_;
+  Mode mode_ = Mode::common;
+  std::string mask_;               ///< of the block that is printed
+  std::uint32_t lane_result_ = 0;  ///< the result whose lane is being printed
 };
 
 }  // namespace tandem::cpu

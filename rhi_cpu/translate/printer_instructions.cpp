@@ -98,8 +98,9 @@ Instruction Printer::view(const spirv_cross::Instruction& instruction) const {
   return {static_cast<spv::Op>(instruction.op), {stream(instruction), instruction.length}};
 }
 
-void Printer::emit_instruction(const spirv_cross::Instruction& instruction) {
-  const Instruction i = view(instruction);
+void Printer::emit_instruction(const spirv_cross::Instruction& instruction) { print_instruction(view(instruction)); }
+
+void Printer::print_instruction(const Instruction& i) {
   if (i.op() == loop_mark) return print_look();
   if (const Operation* operation = find_operation(i.op())) return print_operation(i, *operation);
   if (const PrintFunction print = by_hand(i.op())) return (this->*print)(i);

@@ -9,7 +9,28 @@
 
 namespace tandem::cpu {
 
+void Printer::print_wide_run() {
+  const std::uint32_t count = workgroup_size_[0] * workgroup_size_[1] * workgroup_size_[2];
+  statement(fmt::format(
+      R"(void run(const k::Dispatch& dispatch, std::uint64_t first, std::uint64_t end) {{
+  const k::uvec3 count(dispatch.workgroup_count[0], dispatch.workgroup_count[1], dispatch.workgroup_count[2]);
+  const k::uvec3 base(dispatch.base_workgroup[0], dispatch.base_workgroup[1], dispatch.base_workgroup[2]);
+  for (std::uint64_t workgroup = first; workgroup < end; ++workgroup) {{
+    const k::uvec3 id = base + k::uvec3(workgroup % count.x, workgroup / count.x % count.y, workgroup / count.x / count.y);
+    for (k::uint begin = 0; begin < {3}u; begin += k::lane_count) {{
+      const k::Lanes<k::uint> index = k::Lanes<k::uint>(begin) + k::lane_indices();
+      const k::wide_t<k::uvec3> local = k::local_invocations<{0}u, {1}u>(begin);
+      Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, k::spread(id * k::uvec3({0}u, {1}u, {2}u)) + local, index{4}}}
+          .entry_point(index < k::Lanes<k::uint>({3}u));
+    }}
+  }}
+}}
+)",
+      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], count, options_.watched ? ", dispatch.watch" : ""));
+}
+
 void Printer::print_run() {
+  if (is_wide()) return print_wide_run();
   statement(fmt::format(
       R"(void run(const k::Dispatch& dispatch, std::uint64_t first, std::uint64_t end) {{
   const k::uvec3 count(dispatch.workgroup_count[0], dispatch.workgroup_count[1], dispatch.workgroup_count[2]);

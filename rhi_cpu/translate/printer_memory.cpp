@@ -25,9 +25,13 @@ std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t
 std::uint32_t Printer::pointee(std::uint32_t pointer_type_id) const { return get<Type>(pointer_type_id).parent_type; }
 
 Printer::Address Printer::address_of(std::uint32_t pointer_id) {
-  if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) return known->second;
+  if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) {
+    Address address = known->second;
+    if (address.varies && mode_ == Mode::lane) address.bytes = fmt::format("k::lane({}, lane)", address.bytes);
+    return address;
+  }
   const auto* variable = maybe_get<SPIRVariable>(pointer_id);
-  if (variable == nullptr || variable->phi_variable) return {.bytes = to_expression(pointer_id), .resource = ""};
+  if (variable == nullptr || variable->phi_variable) return address_in(pointer_id);
   const auto known = [](const char* name, std::uint32_t size) {
     return Address{.bytes = name, .resource = "", .data = name, .size = std::to_string(size)};
   };
@@ -44,6 +48,15 @@ Printer::Address Printer::address_of(std::uint32_t pointer_id) {
           .size = name + "_size"};
 }
 
+Printer::Address Printer::address_in(std::uint32_t pointer_id) {
+  const auto* phi = is_wide() ? maybe_get<SPIRVariable>(pointer_id) : nullptr;
+  const std::string text = phi != nullptr ? fmt::format("v_{}", pointer_id) : to_expression(pointer_id);
+  const bool differs = is_wide() && varies(pointer_id);
+  return {.bytes = differs && mode_ == Mode::lane ? fmt::format("k::lane({}, lane)", text) : text,
+          .resource = "",
+          .varies = differs};
+}
+
 std::string Printer::printed(const Address& address) const {
   return address.offset == 0 ? address.bytes : fmt::format("{} + {}", address.bytes, address.offset);
 }
@@ -52,7 +65,8 @@ void Printer::index_address(Address& address, std::uint32_t index_id, std::uint3
   if (const auto* constant = maybe_get<SPIRConstant>(index_id))
     address.offset += constant->scalar() * stride;
   else
-    address.bytes += fmt::format(" + std::size_t({}) * {}", value(index_id), stride);
+    address.bytes += fmt::format(" + {}({}) * {}", mode_ == Mode::wide ? "k::Lanes<std::uint64_t>" : "std::size_t",
+                                 value(index_id), stride);
 }
 
 void Printer::print_access_chain(const Instruction& i) {
@@ -71,6 +85,7 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
     address.size = address.resource + ".size";
   }
   const Type* type = &get<Type>(type_id);
+  if (mode_ == Mode::lane) address.by_lane = true;
   for (; k < i.operand_count(); ++k) {
     const std::uint32_t index = i.operand(k);
     if (is_array(*type)) {
@@ -93,6 +108,7 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
     }
     type = &get<Type>(type_id);
   }
+  if (mode_ == Mode::wide) keep_addresses(i.result(), address);
   addresses_[i.result()] = address;
   set<SPIRExpression>(i.result(), fmt::format("({})", printed(address)), i.result_type(), true);
   if (pointer_values_.contains(i.result())) check_pointer_value(i.result(), address);
@@ -101,7 +117,7 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
 void Printer::chain_in_variable(const Instruction& i) {
   const std::uint32_t base = i.operand(0);
   std::uint32_t type_id = pointee(expression_type_id(base));
-  std::string text = value(base);
+  std::string text = is_wide() ? to_expression(base) : value(base);
   std::size_t k = 1;
   if (type_of(base).storage == spv::StorageClassUniformConstant && is_array(get<Type>(type_id)))
     text = descriptor_element(i, k, type_id);

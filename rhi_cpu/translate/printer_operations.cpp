@@ -14,13 +14,15 @@ using spirv_cross::SPIRType;
 std::string Printer::value(std::uint32_t id) {
   const auto address = addresses_.find(id);
   if (address != addresses_.end() && is_buffer_pointer(id)) check_pointer_value(id, address->second);
-  return to_expression(id);
+  const auto* variable = is_wide() ? maybe_get<spirv_cross::SPIRVariable>(id) : nullptr;
+  const bool is_phi = variable != nullptr && variable->phi_variable;
+  return in_mode(id, is_phi ? fmt::format("v_{}", id) : to_expression(id));
 }
 
 std::string Printer::value_as(std::uint32_t id, BaseType base) {
   const Type& type = type_of(id);
   if (type.basetype == base) return value(id);
-  return fmt::format("{}({})", vector_name(base, type.vecsize), value(id));
+  return fmt::format("{}({})", numbers_name(base, type.vecsize), value(id));
 }
 
 std::string Printer::value_with_sign(std::uint32_t id, Sign sign) {
@@ -35,6 +37,7 @@ std::string Printer::values_with_sign(const Instruction& i, std::size_t first, S
 }
 
 void Printer::define(const Instruction& i, const std::string& text) {
+  if (is_wide()) return define_wide(i.result_type(), i.result(), text);
   emit_op(i.result_type(), i.result(), text, false);
 }
 
@@ -44,6 +47,8 @@ void Printer::define_as(const Instruction& i, const std::string& text, BaseType 
   const bool promoted = type.vecsize == 1 && type.width < 32 && is_integer(base);
   define(i, type.basetype == base && !promoted ? text : fmt::format("{}({})", type_name(type), text));
 }
+
+std::string Printer::lanes_argument() const { return mode_ == Mode::wide ? mask_ + ", " : ""; }
 
 void Printer::print_operation(const Instruction& i, const Operation& operation) {
   switch (operation.shape) {
@@ -68,7 +73,7 @@ void Printer::print_operation(const Instruction& i, const Operation& operation) 
     case Shape::ray_query_getter:
       return print_ray_query_getter(i, operation);
     case Shape::statement:
-      return statement("k::", operation.text, "(", values_with_sign(i, 0, operation.sign), ");");
+      return statement("k::", operation.text, "(", lanes_argument(), values_with_sign(i, 0, operation.sign), ");");
   }
 }
 
@@ -84,7 +89,9 @@ void Printer::print_prefix(const Instruction& i, const Operation& operation) {
 }
 
 void Printer::print_function(const Instruction& i, const Operation& operation) {
-  const std::string text = fmt::format("k::{}({})", operation.text, values_with_sign(i, 0, operation.sign));
+  // Only a ray query's is asked who takes part.
+  const std::string lanes = i.op() == spv::OpRayQueryProceedKHR ? lanes_argument() : "";
+  const std::string text = fmt::format("k::{}({}{})", operation.text, lanes, values_with_sign(i, 0, operation.sign));
   if (operation.sign == Sign::any) return define(i, text);
   define_as(i, text, with_sign(get<Type>(i.result_type()).basetype, operation.sign));
 }
@@ -107,14 +114,14 @@ void Printer::print_conversion(const Instruction& i, const Operation& operation)
                          get_decoration(i.result(), spv::DecorationFPRoundingMode) == spv::FPRoundingModeRTZ;
   define_as(i,
             fmt::format("k::{}<{}>({})", truncates ? "convert_toward_zero" : operation.text,
-                        vector_name(base, type.vecsize), operand),
+                        numbers_name(base, type.vecsize), operand),
             base);
 }
 
 void Printer::print_double_width(const Instruction& i, const Operation& operation) {
   // Both halves have the type of the operands, whatever the signs that the operation goes by.
   const Type& type = type_of(i.operand(0));
-  const std::string name = vector_name(type.basetype, type.vecsize);
+  const std::string name = numbers_name(type.basetype, type.vecsize);
   define(i, fmt::format("{}{{{}({} {} {}), {}(k::{}({}))}}", type_name(i.result_type()), name, value(i.operand(0)),
                         operation.text, value(i.operand(1)), name, operation.function,
                         values_with_sign(i, 0, operation.sign)));
@@ -171,7 +178,7 @@ void Printer::print_bitcast(const Instruction& i) {
   const std::string operand = value(i.operand(0));
   if (is_pointer(type) || is_pointer(type_of(i.operand(0))))
     return define(i, fmt::format("k::bit_cast<{}>({})", type_name(type), operand));
-  define_as(i, fmt::format("k::bit_cast<{}>({})", vector_name(type.basetype, type.vecsize), operand), type.basetype);
+  define_as(i, fmt::format("k::bit_cast<{}>({})", numbers_name(type.basetype, type.vecsize), operand), type.basetype);
 }
 
 void Printer::print_ray_query_getter(const Instruction& i, const Operation& operation) {

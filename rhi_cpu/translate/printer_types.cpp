@@ -25,6 +25,10 @@ bool Printer::has_halves() const {
 }
 
 std::string Printer::type_name(const Type& type) {
+  return mode_ == Mode::wide ? fmt::format("k::wide_t<{}>", narrow_name(type)) : narrow_name(type);
+}
+
+std::string Printer::narrow_name(const Type& type) {
   if (is_pointer(type)) {
     const bool is_writable =
         type.storage != spv::StorageClassPushConstant && type.storage != spv::StorageClassShaderRecordBufferKHR;
@@ -32,7 +36,7 @@ std::string Printer::type_name(const Type& type) {
     return "std::byte*";
   }
   if (is_array(type))
-    return fmt::format("k::Array<{}, {}>", type_name(get<Type>(type.parent_type)), array_length(type));
+    return fmt::format("k::Array<{}, {}>", narrow_name(get<Type>(type.parent_type)), array_length(type));
   switch (type.basetype) {
     case SPIRType::Struct:
       return struct_name(type);
@@ -71,12 +75,31 @@ std::string Printer::struct_name(const Type& type) {
   const std::vector<std::string> names = member_names(type);
   std::string members;
   for (std::uint32_t i = 0; i < names.size(); ++i)
-    members += fmt::format("  {} {};\n", type_name(type.member_types[i]), names[i]);
+    members += fmt::format("  {} {};\n", narrow_name(get<Type>(type.member_types[i])), names[i]);
   const std::string& given = get_name(id);
   std::string base = given.empty() ? "" : "_" + given;
   const auto [place, inserted] = structs_.try_emplace(base + members, fmt::format("struct{}_{}", base, id));
-  if (inserted) struct_declarations_ += fmt::format("struct {} {{\n{}}};\n\n", place->second, members);
+  if (inserted && !is_wide()) struct_declarations_ += fmt::format("struct {} {{\n{}}};\n\n", place->second, members);
+  if (inserted && is_wide()) struct_declarations_ += wide_struct(place->second, members, type);
   return struct_names_[id] = place->second;
+}
+
+std::string Printer::wide_struct(const std::string& name, const std::string& members, const Type& type) {
+  const std::vector<std::string> names = member_names(type);
+  std::string wide, lane, set_lane, select;
+  for (std::uint32_t i = 0; i < names.size(); ++i) {
+    wide += fmt::format("  k::wide_t<{}> {};\n", narrow_name(get<Type>(type.member_types[i])), names[i]);
+    lane += fmt::format("{}k::lane({}, lane_)", i == 0 ? "" : ", ", names[i]);
+    set_lane += fmt::format(" k::set_lane({0}, lane_, value_.{0});", names[i]);
+    select += fmt::format("{0}k::select(mask_, a_.{1}, b_.{1})", i == 0 ? "" : ", ", names[i]);
+  }
+  return fmt::format(
+      "struct {0}_wide;\nstruct {0} {{\n  using Wide = {0}_wide;\n{1}}};\nstruct {0}_wide {{\n  using Narrow = "
+      "{0};\n{2}"
+      "  {0} lane(int lane_) const {{ return {{{3}}}; }}\n"
+      "  void set_lane(int lane_, const {0}& value_) {{{4} }}\n"
+      "  static {0}_wide select(k::Mask mask_, const {0}_wide& a_, const {0}_wide& b_) {{ return {{{5}}}; }}\n}};\n\n",
+      name, members, wide, lane, set_lane, select);
 }
 
 std::string Printer::scalar_text(const SPIRConstant& constant, BaseType base, std::uint32_t column,

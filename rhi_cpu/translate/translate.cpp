@@ -13,6 +13,7 @@ namespace tandem::cpu {
 Translation translate(std::span<const std::uint32_t> spirv, const std::string& label, const TranslateOptions& options) {
   std::vector<std::uint32_t> words = prepare(spirv, label, options.specialization);
   const rhi::ShaderReflection reflection = rhi::reflect_valid(words, label);
+  if (options.lanes != 0) words = with_values_for_variables(words, label);
   if (options.watched) words = with_marked_loops(words);
   try {
     return {Printer(words, label, reflection, options).compile()};

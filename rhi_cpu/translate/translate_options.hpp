@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -17,6 +18,9 @@ struct TranslateOptions {
   bool robust = false;
   /// Loops look at kernel::Dispatch::watch.
   bool watched = false;
+  /// Invocations that the kernel runs at once: 4, 8, 16 or 32, the wide form; 0: the scalar form, one after the other.
+  /// Compute shaders only.
+  std::uint32_t lanes = 0;
 };
 
 }  // namespace tandem::cpu

@@ -97,6 +97,14 @@ inline bool is_culled(const InstanceTraits& instance, const kernel::Ray& ray, co
                                   : kernel::ray_flag_cull_back_facing_triangles)) != 0;
 }
 
+/// Whether a ray can meet a hit that its flags cull, so that a filter has to look at each.
+inline bool needs_filter(const TopLevelScene& scene, std::uint32_t flags) {
+  constexpr std::uint32_t culling = kernel::ray_flag_cull_back_facing_triangles |
+                                    kernel::ray_flag_cull_front_facing_triangles | kernel::ray_flag_cull_opaque |
+                                    kernel::ray_flag_cull_no_opaque | kernel::ray_flag_skip_triangles;
+  return (flags & culling) != 0 || (scene.masks_in_filter && !scene.triangles.direct);
+}
+
 /// What a filter finds in its arguments.
 struct FilterContext : EmbreeContext {
   const TopLevelScene* scene;

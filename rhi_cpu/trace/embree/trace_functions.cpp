@@ -1,5 +1,6 @@
 #include "rhi_cpu/trace/embree/candidates.hpp"
 #include "rhi_cpu/trace/embree/filter.hpp"
+#include "rhi_cpu/trace/embree/packets.hpp"
 #include "rhi_cpu/trace/embree/triangle_on_ray.hpp"
 #include "rhi_cpu/trace/embree/vertex_hit.hpp"
 
@@ -11,14 +12,6 @@ using kernel::Ray;
 
 const TopLevelScene& scene_of(const kernel::TopLevel& top_level) {
   return static_cast<const TopLevelScene&>(top_level);
-}
-
-/// Whether the ray can meet a hit that its flags cull, so that a filter has to look at each.
-bool needs_filter(const TopLevelScene& scene, const Ray& ray) {
-  constexpr std::uint32_t culling = kernel::ray_flag_cull_back_facing_triangles |
-                                    kernel::ray_flag_cull_front_facing_triangles | kernel::ray_flag_cull_opaque |
-                                    kernel::ray_flag_cull_no_opaque | kernel::ray_flag_skip_triangles;
-  return (ray.flags & culling) != 0 || (scene.masks_in_filter && !scene.triangles.direct);
 }
 
 void reject_culled(const RTCFilterFunctionNArguments* arguments) {
@@ -33,7 +26,7 @@ bool closest(const kernel::TopLevel& top_level, const Ray& ray, Hit& hit) {
   RTCRayHit query;
   set_ray(ray, first_included(ray.t_min), last_included(ray.t_max), query.ray);
   clear_hit(query.hit);
-  if (needs_filter(scene, ray)) {
+  if (needs_filter(scene, ray.flags)) {
     if ((ray.flags & kernel::ray_flag_skip_triangles) != 0) return false;
     FilterContext context;
     initialize_context(context, scene, scene.triangles, ray);
@@ -74,7 +67,7 @@ bool occluded(const kernel::TopLevel& top_level, const Ray& ray) {
   if (!is_traceable(scene, scene.triangles, ray)) return false;
   RTCRay query;
   set_ray(ray, first_included(ray.t_min), last_included(ray.t_max), query);
-  if (needs_filter(scene, ray)) {
+  if (needs_filter(scene, ray.flags)) {
     if ((ray.flags & kernel::ray_flag_skip_triangles) != 0) return false;
     FilterContext context;
     initialize_context(context, scene, scene.triangles, ray);
@@ -98,7 +91,11 @@ std::uint32_t next_hits(const kernel::TopLevel& top_level, const Ray& ray, const
 
 }  // namespace
 
-const kernel::TraceFunctions embree_trace_functions = {
-    .closest = &closest, .occluded = &occluded, .next_hits = &next_hits, .visit = &visit};
+const kernel::TraceFunctions embree_trace_functions = {.closest = &closest,
+                                                       .occluded = &occluded,
+                                                       .next_hits = &next_hits,
+                                                       .visit = &visit,
+                                                       .closest_of_packet = &closest_of_packet,
+                                                       .occluded_of_packet = &occluded_of_packet};
 
 }  // namespace tandem::cpu

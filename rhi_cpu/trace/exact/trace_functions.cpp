@@ -10,6 +10,7 @@
 #include "rhi_cpu/trace/exact/box.hpp"
 #include "rhi_cpu/trace/exact/scene.hpp"
 #include "rhi_cpu/trace/exact/triangle.hpp"
+#include "rhi_cpu/trace/packets.hpp"
 
 namespace tandem::cpu::exact {
 namespace {
@@ -198,7 +199,11 @@ bool visit(const kernel::TopLevel& top_level, const Ray& ray, const kernel::Cand
 
 }  // namespace
 
-const kernel::TraceFunctions exact_trace_functions = {
-    .closest = &closest, .occluded = &occluded, .next_hits = &next_hits, .visit = &visit};
+const kernel::TraceFunctions exact_trace_functions = {.closest = &closest,
+                                                      .occluded = &occluded,
+                                                      .next_hits = &next_hits,
+                                                      .visit = &visit,
+                                                      .closest_of_packet = &closest_by_ray,
+                                                      .occluded_of_packet = &occluded_by_ray};
 
 }  // namespace tandem::cpu::exact

@@ -1,0 +1,7 @@
+#pragma once
+
+/// What a kernel of the wide form includes beyond kernel.hpp.
+#include "rhi_cpu/kernel/wide/functions.hpp"
+#include "rhi_cpu/kernel/wide/lanes.hpp"
+#include "rhi_cpu/kernel/wide/memory.hpp"
+#include "rhi_cpu/kernel/wide/ray_query.hpp"
