@@ -76,6 +76,13 @@ std::vector<Case> all_cases() {
   add_arithmetic_cases(cases);
   add_storage_image_cases(cases);
   add_sampler_cases(cases);
+  add_shared_memory_cases(cases);
+  add_shared_atomic_cases(cases);
+  add_barrier_cases(cases);
+  add_subgroup_basic_cases(cases);
+  add_subgroup_arithmetic_cases(cases);
+  add_subgroup_shuffle_cases(cases);
+  add_subgroup_divergence_cases(cases);
   add_ray_query_builtin_cases(cases);
   add_ray_query_traversal_cases(cases);
   add_ray_query_procedural_cases(cases);
