@@ -83,6 +83,8 @@ std::vector<Case> all_cases() {
   add_subgroup_arithmetic_cases(cases);
   add_subgroup_shuffle_cases(cases);
   add_subgroup_divergence_cases(cases);
+  add_divergent_operation_cases(cases);
+  add_subgroup_idiom_cases(cases);
   add_ray_query_builtin_cases(cases);
   add_ray_query_traversal_cases(cases);
   add_ray_query_procedural_cases(cases);

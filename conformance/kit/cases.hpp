@@ -33,6 +33,8 @@ void add_subgroup_basic_cases(Cases& cases);
 void add_subgroup_arithmetic_cases(Cases& cases);
 void add_subgroup_shuffle_cases(Cases& cases);
 void add_subgroup_divergence_cases(Cases& cases);
+void add_divergent_operation_cases(Cases& cases);
+void add_subgroup_idiom_cases(Cases& cases);
 void add_ray_query_builtin_cases(Cases& cases);
 void add_ray_query_traversal_cases(Cases& cases);
 void add_ray_query_procedural_cases(Cases& cases);

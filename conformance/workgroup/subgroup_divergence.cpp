@@ -27,6 +27,8 @@ struct Place {
   bool is_uniform = false;                            ///< outside of constructs that diverge
   bool is_loose = false;                              ///< whatever the device guarantees, they may come apart
   std::function<bool(std::uint32_t index)> is_there;  ///< whether the invocation's control flow leads there
+  /// Invocations with different keys are never there together.
+  std::function<std::uint32_t(std::uint32_t index)> key = [](std::uint32_t) { return 0u; };
 };
 
 struct Divergence {
@@ -69,8 +71,9 @@ std::vector<std::uint32_t> checked_ballot(const Subgroup& subgroup, std::uint32_
   std::vector<std::uint32_t> together;
   for (std::uint32_t other = 0; other < 128; ++other) {
     const bool is_seen = has_bit(self, first, other);
-    const bool may_be_seen =
-        other < subgroup.size && subgroup.lanes[other] != nullptr && place.is_there(subgroup.lanes[other]->index);
+    const bool may_be_seen = other < subgroup.size && subgroup.lanes[other] != nullptr &&
+                             place.is_there(subgroup.lanes[other]->index) &&
+                             place.key(subgroup.lanes[other]->index) == place.key(self.index);
     if (is_seen) together.push_back(other);
     check(!is_seen || may_be_seen,
           fmt::format("{}: lane {} sees lane {}, which never comes there", where, lane, other));
@@ -207,55 +210,66 @@ std::vector<Divergence> branches() {
 
 std::vector<Divergence> loops() {
   const auto trips = [](std::uint32_t count) { return those([count](auto i) { return i % 4 >= count; }); };
-  return {{.name = "trip_counts",
-           .behaviour = "each round of a loop has those who are still in it",
-           .body = "  for (uint k = 0u; k < i % 4u; ++k) place(at + k * N);\n  place(at + 3u * N);",
-           .places = {trips(1), trips(2), trips(3), all_of_them()}},
-          {.name = "break",
-           .behaviour = "who has left a loop takes no part in its further rounds",
-           .body = R"(
+  return {
+      {.name = "trip_counts",
+       .behaviour = "each round of a loop has those who are still in it",
+       .body = "  for (uint k = 0u; k < i % 4u; ++k) place(at + k * N);\n  place(at + 3u * N);",
+       .places = {trips(1), trips(2), trips(3), all_of_them()}},
+      {.name = "break",
+       .behaviour = "who has left a loop takes no part in its further rounds",
+       .body = R"(
   for (uint k = 0u; k < 3u; ++k) {
     if (k == i % 4u) { place(at + k * N); break; }
     place(at + (3u + k) * N);
   }
   place(at + 6u * N);
 )",
-           .places = {those([](auto i) { return i % 4 == 0; }), those([](auto i) { return i % 4 == 1; }),
-                      those([](auto i) { return i % 4 == 2; }), trips(1), trips(2), trips(3), all_of_them()}},
-          {.name = "continue",
-           .behaviour = "who continues a loop misses the rest of its round and comes back for the next",
-           .body = R"(
+       .places = {those([](auto i) { return i % 4 == 0; }), those([](auto i) { return i % 4 == 1; }),
+                  those([](auto i) { return i % 4 == 2; }), trips(1), trips(2), trips(3), all_of_them()}},
+      {.name = "continue",
+       .behaviour = "who continues a loop misses the rest of its round and comes back for the next",
+       .body = R"(
   for (uint k = 0u; k < 3u; ++k) {
     if ((i + k) % 3u == 0u) continue;
     place(at + k * N);
   }
   place(at + 3u * N);
 )",
-           .places = {those([](auto i) { return i % 3 != 0; }), those([](auto i) { return (i + 1) % 3 != 0; }),
-                      those([](auto i) { return (i + 2) % 3 != 0; }), all_of_them()}},
-          {.name = "nested_loops",
-           .behaviour = "inner loops of different lengths, after which the rounds of the outer loop go on together",
-           .body = R"(
+       .places = {those([](auto i) { return i % 3 != 0; }), those([](auto i) { return (i + 1) % 3 != 0; }),
+                  those([](auto i) { return (i + 2) % 3 != 0; }), all_of_them()}},
+      {.name = "nested_loops",
+       .behaviour = "inner loops of different lengths, after which the rounds of the outer loop go on together",
+       .body = R"(
   for (uint k = 0u; k < 2u; ++k) {
     for (uint m = 0u; m < (i + k) % 3u; ++m) place(at + (3u * k + m) * N);
     place(at + (3u * k + 2u) * N);
   }
 )",
-           .places = {those([](auto i) { return i % 3 > 0; }), those([](auto i) { return i % 3 > 1; }), all_of_them(),
-                      those([](auto i) { return (i + 1) % 3 > 0; }), those([](auto i) { return (i + 1) % 3 > 1; }),
-                      all_of_them()}},
-          {.name = "do_while",
-           .behaviour = "a loop that ends for each invocation at its own time",
-           .body = R"(
+       .places = {those([](auto i) { return i % 3 > 0; }), those([](auto i) { return i % 3 > 1; }), all_of_them(),
+                  those([](auto i) { return (i + 1) % 3 > 0; }), those([](auto i) { return (i + 1) % 3 > 1; }),
+                  all_of_them()}},
+      {.name = "do_while",
+       .behaviour = "a loop that ends for each invocation at its own time",
+       .body = R"(
   uint k = 0u;
   do { place(at + k * N); ++k; } while (k < 3u && (i >> k) % 2u == 1u);
   place(at + 3u * N);
 )",
-           .places = {all_of_them(), those([](auto i) { return (i >> 1) % 2 == 1; }),
-                      those([](auto i) { return (i >> 1) % 2 == 1 && (i >> 2) % 2 == 1; }), all_of_them()}},
-          {.name = "functions",
-           .behaviour = "operations in functions that are called from branches and return early",
-           .declarations = R"(
+       .places = {all_of_them(), those([](auto i) { return (i >> 1) % 2 == 1; }),
+                  those([](auto i) { return (i >> 1) % 2 == 1 && (i >> 2) % 2 == 1; }), all_of_them()}},
+      {.name = "one_key_at_a_time",
+       .behaviour = "a loop whose rounds serve those who have the first one's key",
+       .body = R"(
+  const uint key = i * 5u % 7u % 4u;
+  while (true) {
+    if (key == subgroupBroadcastFirst(key)) { place(at); break; }
+  }
+  place(at + N);
+)",
+       .places = {{.is_there = [](auto) { return true; }, .key = [](auto i) { return i * 5 % 7 % 4; }}, all_of_them()}},
+      {.name = "functions",
+       .behaviour = "operations in functions that are called from branches and return early",
+       .declarations = R"(
 uint inner(uint i, uint to) {
   if (i % 3u == 0u) { place(to); return 1u; }
   place(to + N);
@@ -268,13 +282,13 @@ uint outer(uint i, uint to) {
   return 7u;
 }
 )",
-           .body = "  if (i % 2u == 0u) { if (outer(i, at) == 7u) place(at + 5u * N); }\n  place(at + 6u * N);",
-           .places = {those([](auto i) { return i % 2 == 0 && i % 3 == 0; }),
-                      those([](auto i) { return i % 2 == 0 && i % 3 != 0; }),
-                      those([](auto i) { return i % 2 == 0 && i % 3 == 2; }),
-                      those([](auto i) { return i % 2 == 0 && i % 3 == 1; }),
-                      those([](auto i) { return i % 2 == 0 && i % 3 == 1; }),
-                      those([](auto i) { return i % 2 == 0 && i % 3 == 1; }), all_of_them()}}};
+       .body = "  if (i % 2u == 0u) { if (outer(i, at) == 7u) place(at + 5u * N); }\n  place(at + 6u * N);",
+       .places = {those([](auto i) { return i % 2 == 0 && i % 3 == 0; }),
+                  those([](auto i) { return i % 2 == 0 && i % 3 != 0; }),
+                  those([](auto i) { return i % 2 == 0 && i % 3 == 2; }),
+                  those([](auto i) { return i % 2 == 0 && i % 3 == 1; }),
+                  those([](auto i) { return i % 2 == 0 && i % 3 == 1; }),
+                  those([](auto i) { return i % 2 == 0 && i % 3 == 1; }), all_of_them()}}};
 }
 
 }  // namespace
