@@ -23,16 +23,20 @@ SubgroupKernel places(const Size& local_size) {
           .local_size = local_size};
 }
 
-/// The subgroups of the device by default, whose size is known.
-void check_places(Context& context, const Size& local_size) {
-  const SubgroupAnswers seen = run_subgroups(context, places(local_size));
-  const std::uint32_t size = context.device().info().limits.subgroup_size;
-  for (const Subgroup& subgroup : seen.subgroups) check_equal("gl_SubgroupSize", subgroup.size, size);
-  const std::uint32_t invocations = local_size[0] * local_size[1] * local_size[2];
-  check(seen.subgroups.size() * size >= std::size_t{2} * invocations, "the subgroups have too few lanes");
+/// What places() answers.
+SubgroupAnswers elected(Context& context, const SubgroupKernel& kernel) {
+  SubgroupAnswers seen = run_subgroups(context, kernel);
   check_values<std::uint32_t>(seen, 0, "subgroupElect", [](const Subgroup& subgroup, std::uint32_t lane) -> Word {
     return lane == lanes_of(subgroup).front() ? 1 : 0;
   });
+  return seen;
+}
+
+/// The subgroups of the device by default, whose size is known.
+void check_places(Context& context, const Size& local_size) {
+  const SubgroupAnswers seen = elected(context, places(local_size));
+  const std::uint32_t size = context.device().info().limits.subgroup_size;
+  for (const Subgroup& subgroup : seen.subgroups) check_equal("gl_SubgroupSize", subgroup.size, size);
 }
 
 void add_basic_cases(Cases& cases) {
@@ -46,7 +50,7 @@ void add_basic_cases(Cases& cases) {
   group.add("workgroups", "subgroups do not reach over workgroups", [](Context& context) {
     SubgroupKernel kernel = places({5, 1, 1});
     kernel.workgroup_count = {3, 2, 4};
-    const SubgroupAnswers seen = run_subgroups(context, kernel);
+    const SubgroupAnswers seen = elected(context, kernel);
     std::vector<std::uint32_t> invocations(24);
     for (const Subgroup& subgroup : seen.subgroups)
       invocations[subgroup.workgroup] += static_cast<std::uint32_t>(lanes_of(subgroup).size());
@@ -237,7 +241,7 @@ void check_required_sizes(Context& context, bool full) {
   for (std::uint32_t size = limits.min_subgroup_size; size <= limits.max_subgroup_size; size *= 2) {
     SubgroupKernel kernel = places({full ? std::max(size, 32u) : 29, 2, 1});
     kernel.options = {.required_subgroup_size = size, .full_subgroups = full};
-    const SubgroupAnswers seen = run_subgroups(context, kernel);
+    const SubgroupAnswers seen = elected(context, kernel);
     for (const Subgroup& subgroup : seen.subgroups) {
       check_equal("gl_SubgroupSize", subgroup.size, size);
       if (full) check_equal("the invocations of a full subgroup", lanes_of(subgroup).size(), size);
@@ -259,7 +263,7 @@ void add_size_control_cases(Cases& cases) {
         const std::uint32_t size = context.device().info().limits.subgroup_size;
         SubgroupKernel kernel = places({std::max(size, 32u), 3, 1});
         kernel.options.full_subgroups = true;
-        const SubgroupAnswers seen = run_subgroups(context, kernel);
+        const SubgroupAnswers seen = elected(context, kernel);
         for (const Subgroup& subgroup : seen.subgroups)
           check_equal("the invocations of a full subgroup", lanes_of(subgroup).size(), size);
       });

@@ -65,10 +65,10 @@ void check_compaction(Context& context) {
   const SubgroupAnswers seen = run_subgroups(context, kernel);
   const std::uint32_t workgroup_size = kernel.local_size[0];
   for (std::uint32_t first = 0; first < seen.invocations.size(); first += workgroup_size) {
-    std::vector<std::uint32_t> expected, kept;
+    Words expected, kept;
     for (std::uint32_t i = first; i < first + workgroup_size; ++i) {
       if (i % 7 < 3) expected.push_back(i);
-      if (i - first < seen.invocations[first].answers[0]) kept.push_back(seen.invocations[i].answers[1]);
+      if (i - first < seen.invocations[i].answers[0]) kept.push_back(seen.invocations[i].answers[1]);
     }
     std::sort(kept.begin(), kept.end());
     check_words(kept, expected);
