@@ -15,6 +15,12 @@ struct ComputePipelineDesc {
   std::vector<SpecializationValue> specialization;  ///< constants that are not named keep their defaults
   /// The most elements that a bind group gives to an array of descriptors without a length, such as textures[].
   std::uint32_t unsized_array_length = usual_unsized_array_length;
+  /// gl_SubgroupSize: a power of two from Limits::min_subgroup_size to max_subgroup_size. 0: Limits::subgroup_size, or
+  /// for SPIR-V 1.6 and later any such power of two that the device chooses. Vulkan: VK_EXT_subgroup_size_control.
+  std::uint32_t required_subgroup_size = 0;
+  /// Every subgroup has as many invocations as its size. The first dimension of the workgroup must be a multiple of
+  /// that size: of the largest, where the device chooses. Vulkan: VK_EXT_subgroup_size_control.
+  bool full_subgroups = false;
   std::string label;
 };
 

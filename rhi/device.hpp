@@ -49,6 +49,34 @@ struct Capabilities {
   bool shader_float16 = false;  ///< arithmetic and storage buffers
   bool shader_float64 = false;
   bool timestamps = false;  ///< QueryPool
+
+  // GLSL's `shared`, of which there are Limits::workgroup_memory_size bytes.
+  bool zeroed_workgroup_memory = false;        ///< variables with an initializer: GL_EXT_null_initializer
+  bool workgroup_memory_layout = false;        ///< GL_EXT_shared_memory_block: blocks, which share their memory
+  bool workgroup_memory_layout_8bit = false;   ///< 8-bit members of such blocks
+  bool workgroup_memory_layout_16bit = false;  ///< 16-bit members of such blocks
+  bool shared_int64_atomics = false;
+  bool shared_float32_atomics = false;  ///< load, store and exchange
+  bool shared_float32_atomic_add = false;
+  bool shared_float32_atomic_min_max = false;
+  bool shared_float64_atomic_add = false;
+
+  // What compute shaders may do with their subgroups: SPIR-V's GroupNonUniform and the capabilities that continue it.
+  bool subgroup_basic = false;  ///< gl_SubgroupSize and the other built-ins, subgroupElect, subgroupBarrier
+  bool subgroup_vote = false;
+  bool subgroup_arithmetic = false;
+  bool subgroup_ballot = false;
+  bool subgroup_shuffle = false;
+  bool subgroup_shuffle_relative = false;
+  bool subgroup_clustered = false;
+  bool subgroup_quad = false;
+  bool subgroup_rotate = false;                ///< GL_KHR_shader_subgroup_rotate
+  bool subgroup_clustered_rotate = false;      ///< likewise, subgroupClusteredRotate
+  bool subgroup_extended_types = false;        ///< operations on integers of 8, 16 and 64 bits and on floats of 16
+  bool required_subgroup_size = false;         ///< ComputePipelineDesc::required_subgroup_size
+  bool full_subgroups = false;                 ///< ComputePipelineDesc::full_subgroups
+  bool subgroup_uniform_control_flow = false;  ///< GL_EXT_subgroup_uniform_control_flow
+  bool maximal_reconvergence = false;          ///< GL_EXT_maximal_reconvergence
 };
 
 struct Limits {
@@ -61,6 +89,11 @@ struct Limits {
   std::uint64_t max_texel_buffer_elements = 1 << 16;
   std::array<std::uint32_t, 3> max_workgroup_size = {128, 128, 64};
   std::uint32_t max_workgroup_invocations = 128;
+  std::uint32_t workgroup_memory_size = 0;    ///< bytes of shared variables of a workgroup; 0: there are none
+  std::uint32_t subgroup_size = 1;            ///< gl_SubgroupSize where the device does not choose it by the shader
+  std::uint32_t min_subgroup_size = 1;        ///< that the device chooses, or that a pipeline may require
+  std::uint32_t max_subgroup_size = 1;        ///< likewise
+  std::uint32_t max_workgroup_subgroups = 0;  ///< of a pipeline that requires a size
   std::array<std::uint32_t, 3> max_workgroup_count = {65535, 65535, 65535};
   std::uint32_t max_bind_groups = 4;
   std::uint64_t max_geometry_count = 0;   ///< per bottom level

@@ -12,10 +12,17 @@ ComputePipeline::ComputePipeline(ContextHandle context, const rhi::ComputePipeli
   translating_errors(desc.label, "create the compute pipeline", [&] {
     layout_.emplace(*context_, interface());
     const Specialization specialization(desc.specialization, {&desc.shader, 1});
-    const vk::PipelineShaderStageCreateInfo stage = {.stage = vk::ShaderStageFlagBits::eCompute,
-                                                     .module = shader.handle(),
-                                                     .pName = reflection().entry_point.c_str(),
-                                                     .pSpecializationInfo = &specialization.info()};
+    const vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo subgroup_size = {.requiredSubgroupSize =
+                                                                                     desc.required_subgroup_size};
+    vk::PipelineShaderStageCreateFlags flags;
+    if (desc.full_subgroups) flags |= vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups;
+    const vk::PipelineShaderStageCreateInfo stage = {
+        .pNext = desc.required_subgroup_size != 0 ? &subgroup_size : nullptr,
+        .flags = flags,
+        .stage = vk::ShaderStageFlagBits::eCompute,
+        .module = shader.handle(),
+        .pName = reflection().entry_point.c_str(),
+        .pSpecializationInfo = &specialization.info()};
     pipeline_ = context_->device.createComputePipeline(
         nullptr, {.flags = vk::PipelineCreateFlagBits::eDispatchBase, .stage = stage, .layout = layout_->handle()});
     context_->name(pipeline_, desc.label);

@@ -35,7 +35,8 @@ void take_vulkan12(vk::PhysicalDeviceVulkan12Features& enabled, const vk::Physic
   take(enabled, offered, &F::timelineSemaphore, &F::bufferDeviceAddress, &F::scalarBlockLayout, &F::shaderInt8,
        &F::shaderFloat16, &F::storageBuffer8BitAccess, &F::uniformAndStorageBuffer8BitAccess, &F::storagePushConstant8,
        &F::shaderBufferInt64Atomics, &F::shaderSharedInt64Atomics, &F::vulkanMemoryModel,
-       &F::vulkanMemoryModelDeviceScope, &F::samplerMirrorClampToEdge, &F::shaderSubgroupExtendedTypes);
+       &F::vulkanMemoryModelDeviceScope, &F::samplerMirrorClampToEdge, &F::shaderSubgroupExtendedTypes,
+       &F::subgroupBroadcastDynamicId);
   take(enabled, offered, &F::runtimeDescriptorArray, &F::descriptorBindingPartiallyBound,
        &F::shaderUniformBufferArrayNonUniformIndexing, &F::shaderSampledImageArrayNonUniformIndexing,
        &F::shaderStorageBufferArrayNonUniformIndexing, &F::shaderStorageImageArrayNonUniformIndexing,
@@ -68,6 +69,17 @@ void for_each_extension(EnabledFeatures& enabled, const Visit& visit) {
   visit(VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME, enabled.atomic_float2);
   visit(VK_EXT_SHADER_IMAGE_ATOMIC_INT64_EXTENSION_NAME, enabled.image_atomic_int64);
   visit(VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME, enabled.explicit_workgroup_layout);
+  visit(VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME, enabled.subgroup_uniform_control_flow);
+#ifdef VK_KHR_shader_subgroup_rotate
+  visit(VK_KHR_SHADER_SUBGROUP_ROTATE_EXTENSION_NAME, enabled.subgroup_rotate);
+#endif
+#ifdef VK_KHR_shader_maximal_reconvergence
+  visit(VK_KHR_SHADER_MAXIMAL_RECONVERGENCE_EXTENSION_NAME, enabled.maximal_reconvergence);
+#endif
+  // Vulkan forbids the structures beside that of 1.3, which holds the same features.
+  if (enabled.has_vulkan13) return;
+  visit(VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME, enabled.subgroup_size_control);
+  visit(VK_KHR_ZERO_INITIALIZE_WORKGROUP_MEMORY_EXTENSION_NAME, enabled.zero_initialize_workgroup_memory);
 }
 
 /// The features of extensions, wherever one is offered: a driver need not know the structure otherwise.
@@ -108,14 +120,31 @@ std::vector<Use> uses_of(const EnabledFeatures& e) {
       {VK_EXT_SHADER_ATOMIC_FLOAT_EXTENSION_NAME,
        any(e.atomic_float.shaderBufferFloat32Atomics, e.atomic_float.shaderBufferFloat32AtomicAdd,
            e.atomic_float.shaderBufferFloat64Atomics, e.atomic_float.shaderBufferFloat64AtomicAdd,
-           e.atomic_float.shaderImageFloat32Atomics, e.atomic_float.shaderImageFloat32AtomicAdd)},
+           e.atomic_float.shaderImageFloat32Atomics, e.atomic_float.shaderImageFloat32AtomicAdd,
+           e.atomic_float.shaderSharedFloat32Atomics, e.atomic_float.shaderSharedFloat32AtomicAdd,
+           e.atomic_float.shaderSharedFloat64Atomics, e.atomic_float.shaderSharedFloat64AtomicAdd)},
       {VK_EXT_SHADER_ATOMIC_FLOAT_2_EXTENSION_NAME,
        any(e.atomic_float2.shaderBufferFloat16Atomics, e.atomic_float2.shaderBufferFloat16AtomicAdd,
            e.atomic_float2.shaderBufferFloat16AtomicMinMax, e.atomic_float2.shaderBufferFloat32AtomicMinMax,
-           e.atomic_float2.shaderBufferFloat64AtomicMinMax)},
+           e.atomic_float2.shaderBufferFloat64AtomicMinMax, e.atomic_float2.shaderSharedFloat16Atomics,
+           e.atomic_float2.shaderSharedFloat16AtomicAdd, e.atomic_float2.shaderSharedFloat16AtomicMinMax,
+           e.atomic_float2.shaderSharedFloat32AtomicMinMax, e.atomic_float2.shaderSharedFloat64AtomicMinMax)},
       {VK_EXT_SHADER_IMAGE_ATOMIC_INT64_EXTENSION_NAME, any(e.image_atomic_int64.shaderImageInt64Atomics)},
       {VK_KHR_WORKGROUP_MEMORY_EXPLICIT_LAYOUT_EXTENSION_NAME,
-       any(e.explicit_workgroup_layout.workgroupMemoryExplicitLayout)}};
+       any(e.explicit_workgroup_layout.workgroupMemoryExplicitLayout)},
+      {VK_KHR_SHADER_SUBGROUP_UNIFORM_CONTROL_FLOW_EXTENSION_NAME,
+       any(e.subgroup_uniform_control_flow.shaderSubgroupUniformControlFlow)},
+      {VK_EXT_SUBGROUP_SIZE_CONTROL_EXTENSION_NAME,
+       any(e.subgroup_size_control.subgroupSizeControl, e.subgroup_size_control.computeFullSubgroups)},
+      {VK_KHR_ZERO_INITIALIZE_WORKGROUP_MEMORY_EXTENSION_NAME,
+       any(e.zero_initialize_workgroup_memory.shaderZeroInitializeWorkgroupMemory)},
+#ifdef VK_KHR_shader_subgroup_rotate
+      {VK_KHR_SHADER_SUBGROUP_ROTATE_EXTENSION_NAME, has_subgroup_rotate(e)},
+#endif
+#ifdef VK_KHR_shader_maximal_reconvergence
+      {VK_KHR_SHADER_MAXIMAL_RECONVERGENCE_EXTENSION_NAME, has_maximal_reconvergence(e)},
+#endif
+  };
 }
 
 }  // namespace
@@ -133,6 +162,43 @@ EnabledFeatures choose_features(const vk::raii::PhysicalDevice& device) {
   // Vulkan asks for the one with the other.
   if (!enabled.core.robustBufferAccess) enabled.robustness2.robustBufferAccess2 = VK_FALSE;
   return enabled;
+}
+
+bool has_subgroup_size_control(const EnabledFeatures& enabled) {
+  return enabled.vulkan13.subgroupSizeControl || enabled.subgroup_size_control.subgroupSizeControl;
+}
+
+bool has_full_subgroups(const EnabledFeatures& enabled) {
+  return enabled.vulkan13.computeFullSubgroups || enabled.subgroup_size_control.computeFullSubgroups;
+}
+
+bool has_zeroed_workgroup_memory(const EnabledFeatures& enabled) {
+  return enabled.vulkan13.shaderZeroInitializeWorkgroupMemory ||
+         enabled.zero_initialize_workgroup_memory.shaderZeroInitializeWorkgroupMemory;
+}
+
+bool has_subgroup_rotate([[maybe_unused]] const EnabledFeatures& enabled) {
+#ifdef VK_KHR_shader_subgroup_rotate
+  return enabled.subgroup_rotate.shaderSubgroupRotate;
+#else
+  return false;
+#endif
+}
+
+bool has_clustered_subgroup_rotate([[maybe_unused]] const EnabledFeatures& enabled) {
+#ifdef VK_KHR_shader_subgroup_rotate
+  return enabled.subgroup_rotate.shaderSubgroupRotateClustered;
+#else
+  return false;
+#endif
+}
+
+bool has_maximal_reconvergence([[maybe_unused]] const EnabledFeatures& enabled) {
+#ifdef VK_KHR_shader_maximal_reconvergence
+  return enabled.maximal_reconvergence.shaderMaximalReconvergence;
+#else
+  return false;
+#endif
 }
 
 void forget_robust_access(EnabledFeatures& enabled) {

@@ -23,7 +23,26 @@ struct EnabledFeatures {
   vk::PhysicalDeviceShaderAtomicFloat2FeaturesEXT atomic_float2;
   vk::PhysicalDeviceShaderImageAtomicInt64FeaturesEXT image_atomic_int64;
   vk::PhysicalDeviceWorkgroupMemoryExplicitLayoutFeaturesKHR explicit_workgroup_layout;
+  vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR subgroup_uniform_control_flow;
+  // Of devices with Vulkan 1.2: `vulkan13` has them otherwise.
+  vk::PhysicalDeviceSubgroupSizeControlFeatures subgroup_size_control;
+  vk::PhysicalDeviceZeroInitializeWorkgroupMemoryFeatures zero_initialize_workgroup_memory;
+// Headers of Vulkan 1.3.239, which are those of Debian 12, do not know the extensions below.
+#ifdef VK_KHR_shader_subgroup_rotate
+  vk::PhysicalDeviceShaderSubgroupRotateFeaturesKHR subgroup_rotate;
+#endif
+#ifdef VK_KHR_shader_maximal_reconvergence
+  vk::PhysicalDeviceShaderMaximalReconvergenceFeaturesKHR maximal_reconvergence;
+#endif
 };
+
+/// What comes from one of several structures, or from one that the headers may not know.
+bool has_subgroup_size_control(const EnabledFeatures& enabled);
+bool has_full_subgroups(const EnabledFeatures& enabled);
+bool has_zeroed_workgroup_memory(const EnabledFeatures& enabled);
+bool has_subgroup_rotate(const EnabledFeatures& enabled);
+bool has_clustered_subgroup_rotate(const EnabledFeatures& enabled);
+bool has_maximal_reconvergence(const EnabledFeatures& enabled);
 
 EnabledFeatures choose_features(const vk::raii::PhysicalDevice& device);
 

@@ -101,6 +101,7 @@ rhi::Limits limits_of(const vk::PhysicalDeviceLimits& core,
     limits.max_workgroup_count[i] = core.maxComputeWorkGroupCount[i];
   }
   limits.max_workgroup_invocations = core.maxComputeWorkGroupInvocations;
+  limits.workgroup_memory_size = core.maxComputeSharedMemorySize;
   limits.max_bind_groups = core.maxBoundDescriptorSets;
   limits.max_geometry_count = acceleration.maxGeometryCount;
   limits.max_primitive_count = acceleration.maxPrimitiveCount;
@@ -110,6 +111,52 @@ rhi::Limits limits_of(const vk::PhysicalDeviceLimits& core,
                              core.maxImageDimensionCube};
   limits.max_texture_layers = core.maxImageArrayLayers;
   return limits;
+}
+
+void add_workgroup_memory(rhi::Capabilities& capabilities, const EnabledFeatures& enabled) {
+  capabilities.zeroed_workgroup_memory = has_zeroed_workgroup_memory(enabled);
+  capabilities.workgroup_memory_layout = enabled.explicit_workgroup_layout.workgroupMemoryExplicitLayout;
+  capabilities.workgroup_memory_layout_8bit = enabled.explicit_workgroup_layout.workgroupMemoryExplicitLayout8BitAccess;
+  capabilities.workgroup_memory_layout_16bit =
+      enabled.explicit_workgroup_layout.workgroupMemoryExplicitLayout16BitAccess;
+  capabilities.shared_int64_atomics = enabled.vulkan12.shaderSharedInt64Atomics;
+  capabilities.shared_float32_atomics = enabled.atomic_float.shaderSharedFloat32Atomics;
+  capabilities.shared_float32_atomic_add = enabled.atomic_float.shaderSharedFloat32AtomicAdd;
+  capabilities.shared_float32_atomic_min_max = enabled.atomic_float2.shaderSharedFloat32AtomicMinMax;
+  capabilities.shared_float64_atomic_add = enabled.atomic_float.shaderSharedFloat64AtomicAdd;
+}
+
+void add_subgroup_operations(rhi::Capabilities& capabilities, vk::SubgroupFeatureFlags operations,
+                             const EnabledFeatures& enabled) {
+  using Operation = vk::SubgroupFeatureFlagBits;
+  const auto has = [operations](Operation operation) { return bool(operations & operation); };
+  capabilities.subgroup_basic = has(Operation::eBasic);
+  capabilities.subgroup_vote = has(Operation::eVote);
+  capabilities.subgroup_arithmetic = has(Operation::eArithmetic);
+  capabilities.subgroup_ballot = has(Operation::eBallot);
+  capabilities.subgroup_shuffle = has(Operation::eShuffle);
+  capabilities.subgroup_shuffle_relative = has(Operation::eShuffleRelative);
+  capabilities.subgroup_clustered = has(Operation::eClustered);
+  capabilities.subgroup_quad = has(Operation::eQuad);
+  capabilities.subgroup_rotate = has_subgroup_rotate(enabled);
+  capabilities.subgroup_clustered_rotate = has_clustered_subgroup_rotate(enabled);
+  capabilities.subgroup_extended_types = enabled.vulkan12.shaderSubgroupExtendedTypes;
+  capabilities.full_subgroups = has_full_subgroups(enabled);
+  capabilities.subgroup_uniform_control_flow = enabled.subgroup_uniform_control_flow.shaderSubgroupUniformControlFlow;
+  capabilities.maximal_reconvergence = has_maximal_reconvergence(enabled);
+}
+
+/// What devices say that let a pipeline require the size of its subgroups.
+void add_subgroup_sizes(PhysicalDevice& device) {
+  if (!has_subgroup_size_control(device.features)) return;
+  const auto sizes =
+      device.handle.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupSizeControlProperties>()
+          .get<vk::PhysicalDeviceSubgroupSizeControlProperties>();
+  device.info.limits.min_subgroup_size = sizes.minSubgroupSize;
+  device.info.limits.max_subgroup_size = sizes.maxSubgroupSize;
+  device.info.limits.max_workgroup_subgroups = sizes.maxComputeWorkgroupSubgroups;
+  device.info.capabilities.required_subgroup_size =
+      bool(sizes.requiredSubgroupSizeStages & vk::ShaderStageFlagBits::eCompute);
 }
 
 /// What only devices with VK_KHR_ray_tracing_pipeline say.
@@ -188,7 +235,12 @@ std::optional<PhysicalDevice> examine(vk::raii::PhysicalDevice handle, std::stri
   info.kind = kind_of(core_properties.deviceType);
   info.capabilities = capabilities_of(device.features);
   info.capabilities.timestamps = device.timestamp_valid_bits > 0;
+  add_workgroup_memory(info.capabilities, device.features);
+  add_subgroup_operations(info.capabilities, device.subgroup_operations, device.features);
   info.limits = limits_of(core_properties.limits, acceleration);
+  info.limits.subgroup_size = vulkan11_properties.subgroupSize;
+  info.limits.min_subgroup_size = info.limits.max_subgroup_size = vulkan11_properties.subgroupSize;
+  add_subgroup_sizes(device);
   for (std::size_t i = 0; i < info.formats.size(); ++i)
     info.formats[i] = support_of(device.handle, static_cast<rhi::TextureFormat>(i));
   if (device.features.ray_tracing_pipeline.rayTracingPipeline) add_ray_tracing_pipeline_limits(device);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 
 #include <spirv/unified1/spirv.hpp11>
 
@@ -30,8 +31,9 @@ constexpr auto core = [](const PhysicalDevice& device) { return device.features.
 template <vk::Bool32 vk::PhysicalDeviceVulkan11Features::*feature>
 constexpr auto vulkan11 = [](const PhysicalDevice& device) { return device.features.vulkan11.*feature == VK_TRUE; };
 
-template <vk::Bool32 vk::PhysicalDeviceVulkan12Features::*feature>
-constexpr auto vulkan12 = [](const PhysicalDevice& device) { return device.features.vulkan12.*feature == VK_TRUE; };
+template <vk::Bool32 vk::PhysicalDeviceVulkan12Features::*... feature>
+constexpr auto vulkan12 =
+    [](const PhysicalDevice& device) { return ((device.features.vulkan12.*feature == VK_TRUE) || ...); };
 
 template <vk::Bool32 vk::PhysicalDeviceVulkan13Features::*feature>
 constexpr auto vulkan13 = [](const PhysicalDevice& device) { return device.features.vulkan13.*feature == VK_TRUE; };
@@ -76,7 +78,7 @@ constexpr std::array rules = {
     Rule{Capability::Int64, core<&Core::shaderInt64>},
     Rule{Capability::Float16, vulkan12<&V12::shaderFloat16>},
     Rule{Capability::Float64, core<&Core::shaderFloat64>},
-    Rule{Capability::Int64Atomics, vulkan12<&V12::shaderBufferInt64Atomics>},
+    Rule{Capability::Int64Atomics, vulkan12<&V12::shaderBufferInt64Atomics, &V12::shaderSharedInt64Atomics>},
     Rule{Capability::StorageBuffer8BitAccess, vulkan12<&V12::storageBuffer8BitAccess>},
     Rule{Capability::UniformAndStorageBuffer8BitAccess, vulkan12<&V12::uniformAndStorageBuffer8BitAccess>},
     Rule{Capability::StorageBuffer16BitAccess, vulkan11<&V11::storageBuffer16BitAccess>},
@@ -102,6 +104,9 @@ constexpr std::array rules = {
     Rule{Capability::GroupNonUniformShuffleRelative, subgroup<Subgroup::eShuffleRelative>},
     Rule{Capability::GroupNonUniformClustered, subgroup<Subgroup::eClustered>},
     Rule{Capability::GroupNonUniformQuad, subgroup<Subgroup::eQuad>},
+    // That of the clusters of a rotation is told by its operands, which the validation layer looks at.
+    Rule{Capability::GroupNonUniformRotateKHR,
+         [](const PhysicalDevice& device) { return has_subgroup_rotate(device.features); }},
     Rule{Capability::RayQueryKHR, extension_feature<&E::ray_query, &vk::PhysicalDeviceRayQueryFeaturesKHR::rayQuery>},
     Rule{Capability::RayTraversalPrimitiveCullingKHR, primitive_culling},
     Rule{Capability::RayTracingKHR,
@@ -157,14 +162,18 @@ constexpr std::array rules = {
          extension_feature<&E::atomic_float, &AtomicFloat::shaderBufferFloat64AtomicAdd,
                            &AtomicFloat::shaderSharedFloat64AtomicAdd>},
     Rule{Capability::AtomicFloat16AddEXT,
-         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicAdd>},
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicAdd,
+                           &AtomicFloat2::shaderSharedFloat16AtomicAdd>},
     Rule{Capability::AtomicFloat16MinMaxEXT,
-         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicMinMax>},
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat16AtomicMinMax,
+                           &AtomicFloat2::shaderSharedFloat16AtomicMinMax>},
     Rule{Capability::AtomicFloat32MinMaxEXT,
          extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat32AtomicMinMax,
+                           &AtomicFloat2::shaderSharedFloat32AtomicMinMax,
                            &AtomicFloat2::shaderImageFloat32AtomicMinMax>},
     Rule{Capability::AtomicFloat64MinMaxEXT,
-         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat64AtomicMinMax>},
+         extension_feature<&E::atomic_float2, &AtomicFloat2::shaderBufferFloat64AtomicMinMax,
+                           &AtomicFloat2::shaderSharedFloat64AtomicMinMax>},
     Rule{Capability::Int64ImageEXT,
          extension_feature<&E::image_atomic_int64,
                            &vk::PhysicalDeviceShaderImageAtomicInt64FeaturesEXT::shaderImageInt64Atomics>},
@@ -176,11 +185,49 @@ constexpr std::array rules = {
          extension_feature<&E::explicit_workgroup_layout, &ExplicitLayout::workgroupMemoryExplicitLayout16BitAccess>},
 };
 
+/// An extension of SPIR-V that has no capability of its own, but execution modes for which Vulkan has a feature.
+struct ExtensionRule {
+  std::string_view name;
+  bool (*allowed)(const PhysicalDevice& device);
+};
+
+constexpr std::array extension_rules = {
+    ExtensionRule{
+        "SPV_KHR_subgroup_uniform_control_flow",
+        extension_feature<
+            &E::subgroup_uniform_control_flow,
+            &vk::PhysicalDeviceShaderSubgroupUniformControlFlowFeaturesKHR::shaderSubgroupUniformControlFlow>},
+    ExtensionRule{"SPV_KHR_maximal_reconvergence",
+                  [](const PhysicalDevice& device) { return has_maximal_reconvergence(device.features); }},
+};
+
 /// "the SPIR-V capability X", for one that the device does not offer; empty for one that it does.
 std::string missing(Capability capability, const PhysicalDevice& device) {
   for (const Rule& rule : rules)
     if (rule.capability == capability && rule.allowed(device)) return {};
   return "the SPIR-V capability " + rhi::capability_name(static_cast<std::uint32_t>(capability));
+}
+
+/// The text that begins at this operand.
+std::string_view literal_string(std::span<const std::uint32_t> operand) {
+  const std::string_view text(reinterpret_cast<const char*>(operand.data()), operand.size_bytes());
+  return text.substr(0, text.find('\0'));
+}
+
+/// What of an instruction that is not OpCapability needs a feature that the device lacks; empty: nothing.
+std::string missing(std::span<const std::uint32_t> instruction, const PhysicalDevice& device) {
+  constexpr std::size_t words_with_initializer = 5;
+  const auto op = static_cast<spv::Op>(instruction[0] & 0xffff);
+  if (op == spv::Op::OpExtension) {
+    const std::string_view name = literal_string(instruction.subspan(1));
+    for (const ExtensionRule& rule : extension_rules)
+      if (rule.name == name && !rule.allowed(device)) return "the SPIR-V extension " + std::string(name);
+  }
+  if (op == spv::Op::OpVariable && instruction.size() == words_with_initializer &&
+      instruction[3] == static_cast<std::uint32_t>(spv::StorageClass::Workgroup) &&
+      !has_zeroed_workgroup_memory(device.features))
+    return "workgroup memory that is initialized";
+  return {};
 }
 
 std::string version_text(std::uint32_t version) {
@@ -208,11 +255,17 @@ std::vector<std::string> missing_capabilities(std::span<const std::uint32_t> spi
   std::vector<std::string> all;
   if (spirv[1] > device.newest_spirv)
     all.push_back("SPIR-V " + version_text(spirv[1]) + " (it takes at most " + version_text(device.newest_spirv) + ")");
-  // Capabilities come first in a module, so the first other instruction ends them.
-  for (std::size_t i = header_words; i + 1 < spirv.size(); i += spirv[i] >> 16) {
-    if ((spirv[i] & 0xffff) != static_cast<std::uint32_t>(spv::Op::OpCapability)) break;
-    const std::string capability = missing(static_cast<Capability>(spirv[i + 1]), device);
-    if (!capability.empty()) all.push_back(capability);
+  for (std::size_t i = header_words; i + 1 < spirv.size();) {
+    const std::size_t length = std::clamp<std::size_t>(spirv[i] >> 16, 1, spirv.size() - i);
+    const std::span<const std::uint32_t> instruction = spirv.subspan(i, length);
+    const auto op = static_cast<spv::Op>(instruction[0] & 0xffff);
+    // Functions come last and declare nothing of the module's.
+    if (op == spv::Op::OpFunction) break;
+    std::string what = op == spv::Op::OpCapability && length > 1
+                           ? missing(static_cast<Capability>(instruction[1]), device)
+                           : missing(instruction, device);
+    if (!what.empty() && std::find(all.begin(), all.end(), what) == all.end()) all.push_back(std::move(what));
+    i += length;
   }
   return all;
 }

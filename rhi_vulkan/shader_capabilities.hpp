@@ -17,7 +17,7 @@ std::vector<std::uint32_t> known_capabilities();
 std::vector<std::uint32_t> offered_capabilities(const PhysicalDevice& device);
 
 /// What the module needs and no feature that the device was created with allows, "the SPIR-V capability Float16" for
-/// example: its version, and the capabilities that it declares.
+/// example: its version, the capabilities and extensions that it declares, and initialized workgroup memory.
 std::vector<std::string> missing_capabilities(std::span<const std::uint32_t> spirv, const PhysicalDevice& device);
 
 /// Throws rhi::Error(unsupported), in the name of `label`, with all that missing_capabilities() finds.

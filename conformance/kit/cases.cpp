@@ -28,6 +28,30 @@ constexpr std::pair<Capability, std::string_view> capability_names[] = {
     {&Capabilities::shader_float16, "shader_float16"},
     {&Capabilities::shader_float64, "shader_float64"},
     {&Capabilities::timestamps, "timestamps"},
+    {&Capabilities::zeroed_workgroup_memory, "zeroed_workgroup_memory"},
+    {&Capabilities::workgroup_memory_layout, "workgroup_memory_layout"},
+    {&Capabilities::workgroup_memory_layout_8bit, "workgroup_memory_layout_8bit"},
+    {&Capabilities::workgroup_memory_layout_16bit, "workgroup_memory_layout_16bit"},
+    {&Capabilities::shared_int64_atomics, "shared_int64_atomics"},
+    {&Capabilities::shared_float32_atomics, "shared_float32_atomics"},
+    {&Capabilities::shared_float32_atomic_add, "shared_float32_atomic_add"},
+    {&Capabilities::shared_float32_atomic_min_max, "shared_float32_atomic_min_max"},
+    {&Capabilities::shared_float64_atomic_add, "shared_float64_atomic_add"},
+    {&Capabilities::subgroup_basic, "subgroup_basic"},
+    {&Capabilities::subgroup_vote, "subgroup_vote"},
+    {&Capabilities::subgroup_arithmetic, "subgroup_arithmetic"},
+    {&Capabilities::subgroup_ballot, "subgroup_ballot"},
+    {&Capabilities::subgroup_shuffle, "subgroup_shuffle"},
+    {&Capabilities::subgroup_shuffle_relative, "subgroup_shuffle_relative"},
+    {&Capabilities::subgroup_clustered, "subgroup_clustered"},
+    {&Capabilities::subgroup_quad, "subgroup_quad"},
+    {&Capabilities::subgroup_rotate, "subgroup_rotate"},
+    {&Capabilities::subgroup_clustered_rotate, "subgroup_clustered_rotate"},
+    {&Capabilities::subgroup_extended_types, "subgroup_extended_types"},
+    {&Capabilities::required_subgroup_size, "required_subgroup_size"},
+    {&Capabilities::full_subgroups, "full_subgroups"},
+    {&Capabilities::subgroup_uniform_control_flow, "subgroup_uniform_control_flow"},
+    {&Capabilities::maximal_reconvergence, "maximal_reconvergence"},
 };
 
 }  // namespace
@@ -52,6 +76,15 @@ std::vector<Case> all_cases() {
   add_arithmetic_cases(cases);
   add_storage_image_cases(cases);
   add_sampler_cases(cases);
+  add_shared_memory_cases(cases);
+  add_shared_atomic_cases(cases);
+  add_barrier_cases(cases);
+  add_subgroup_basic_cases(cases);
+  add_subgroup_arithmetic_cases(cases);
+  add_subgroup_shuffle_cases(cases);
+  add_subgroup_divergence_cases(cases);
+  add_divergent_operation_cases(cases);
+  add_subgroup_idiom_cases(cases);
   add_ray_query_builtin_cases(cases);
   add_ray_query_traversal_cases(cases);
   add_ray_query_procedural_cases(cases);

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "rhi/device.hpp"
 
@@ -12,6 +13,13 @@ namespace tandem::conformance {
 struct Settings {
   /// Rays of all watertightness cases together.
   std::uint64_t watertightness_rays = 500'000;
+};
+
+/// What a compute pipeline has beside its shader: members of rhi::ComputePipelineDesc.
+struct ComputeOptions {
+  std::vector<rhi::SpecializationValue> specialization = {};
+  std::uint32_t required_subgroup_size = 0;
+  bool full_subgroups = false;
 };
 
 /// What a case runs with: the device, and the shaders that cases before it have compiled for it. Used by one thread;
@@ -30,7 +38,8 @@ class Context {
 
   /// The compute pipeline of this source, made at the first call. Run-time compilation takes about half a second on a
   /// CPU device, so cases share shaders and differ in data where they can.
-  rhi::ComputePipelineHandle compute_pipeline(const std::string& glsl, const std::string& label);
+  rhi::ComputePipelineHandle compute_pipeline(const std::string& glsl, const std::string& label,
+                                              const ComputeOptions& options = {});
 
   /// Adds a sentence that the report shows beside the result, such as a count: the same in every run on the same
   /// device.

@@ -9,7 +9,8 @@ namespace tandem::conformance {
 
 Words answers(Context& context, const ShaderRun& run, std::size_t count) {
   rhi::Device& device = context.device();
-  const rhi::ComputePipelineHandle pipeline = context.compute_pipeline("#version 460\n" + run.glsl, run.label);
+  const rhi::ComputePipelineHandle pipeline =
+      context.compute_pipeline("#version 460\n" + run.glsl, run.label, run.options);
   const rhi::BufferHandle buffer = words_buffer(device, Words(count), "answers of " + run.label);
   std::vector<rhi::BindGroupEntry> entries = run.entries;
   entries.push_back({.binding = 0, .resource = rhi::BufferRange{buffer}});

@@ -19,6 +19,7 @@ struct ShaderRun {
   std::vector<rhi::BindGroupEntry> entries = {};  ///< of set 0, but for binding 0
   Words push_constants = {};
   std::array<std::uint32_t, 3> workgroup_count = {1, 1, 1};
+  ComputeOptions options = {};
 };
 
 /// The `count` words of binding 0, which are zero before the shader runs.

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -71,6 +73,38 @@ std::string workgroup_problem(const std::array<std::uint32_t, 3>& size, const Li
   if (invocations <= limits.max_workgroup_invocations) return {};
   return to_string(invocations) + " invocations in a workgroup are more than the device's " +
          to_string(limits.max_workgroup_invocations);
+}
+
+void require_offered(bool offered, const std::string& label, const DeviceInfo& device, const std::string& what) {
+  if (!offered) throw Error(ErrorCode::unsupported, label, "device '" + device.name + "' does not offer " + what);
+}
+
+/// From this version on the device may choose a subgroup size by the shader (SPIR-V 1.6, Vulkan: VaryingSubgroupSize).
+constexpr std::uint32_t first_varying_spirv = 0x00010600;
+
+void check_subgroups(const ComputePipelineDesc& desc, const std::array<std::uint32_t, 3>& workgroup_size,
+                     const DeviceInfo& device) {
+  const Limits& limits = device.limits;
+  const std::uint32_t required = desc.required_subgroup_size;
+  if (required != 0) {
+    require_offered(device.capabilities.required_subgroup_size, desc.label, device, "required subgroup sizes");
+    require(
+        std::has_single_bit(required) && required >= limits.min_subgroup_size && required <= limits.max_subgroup_size,
+        desc.label,
+        "a required subgroup size of " + to_string(required) + ", where the device allows powers of two from " +
+            to_string(limits.min_subgroup_size) + " to " + to_string(limits.max_subgroup_size));
+    const std::uint64_t invocations = std::uint64_t{workgroup_size[0]} * workgroup_size[1] * workgroup_size[2];
+    require(invocations <= std::uint64_t{required} * limits.max_workgroup_subgroups, desc.label,
+            to_string(invocations) + " invocations in a workgroup are more than the device's " +
+                to_string(limits.max_workgroup_subgroups) + " subgroups of the required size " + to_string(required));
+  }
+  if (!desc.full_subgroups) return;
+  require_offered(device.capabilities.full_subgroups, desc.label, device, "full subgroups");
+  const bool varying = desc.shader->spirv()[1] >= first_varying_spirv;
+  const std::uint32_t size = required != 0 ? required : varying ? limits.max_subgroup_size : limits.subgroup_size;
+  require(workgroup_size[0] % size == 0, desc.label,
+          "full subgroups need a workgroup size in dimension 0 that is a multiple of the subgroup size " +
+              to_string(size) + ", which " + to_string(workgroup_size[0]) + " is not");
 }
 
 void check_stage(const ShaderModuleHandle& shader, ShaderStage stage, const std::string& label,
@@ -155,6 +189,7 @@ void check(const ComputePipelineDesc& desc, const DeviceInfo& device) {
         size[i] = static_cast<std::uint32_t>(given.value);
   const std::string problem = workgroup_problem(size, device.limits);
   require(problem.empty(), desc.label, problem);
+  check_subgroups(desc, size, device);
   check_interface(combined_interface({&desc.shader, 1}, desc.label, desc.unsized_array_length), desc.label, device);
 }
 

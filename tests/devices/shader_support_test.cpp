@@ -37,8 +37,8 @@ TEST_CASE("Both backends know the same capabilities, but for those that the CPU 
   CHECK(difference(vulkan, cpu) ==
         std::set<std::string>{"DenormFlushToZero", "GroupNonUniform", "GroupNonUniformArithmetic",
                               "GroupNonUniformBallot", "GroupNonUniformClustered", "GroupNonUniformQuad",
-                              "GroupNonUniformShuffle", "GroupNonUniformShuffleRelative", "GroupNonUniformVote",
-                              "RoundingModeRTZ", "WorkgroupMemoryExplicitLayout16BitAccessKHR",
+                              "GroupNonUniformRotateKHR", "GroupNonUniformShuffle", "GroupNonUniformShuffleRelative",
+                              "GroupNonUniformVote", "RoundingModeRTZ", "WorkgroupMemoryExplicitLayout16BitAccessKHR",
                               "WorkgroupMemoryExplicitLayout8BitAccessKHR", "WorkgroupMemoryExplicitLayoutKHR"});
 }
 

@@ -270,4 +270,49 @@ TEST_CASE("bind groups: textures and null structures") {
   check_rule(broken_rule(desc), "is not an acceleration structure in the shader");
 }
 
+TEST_CASE("a required subgroup size is a power of two that the device allows, with room for the workgroup") {
+  rhi::ComputePipelineDesc desc;
+  desc.shader = plain_shader(ShaderStage::compute, "layout(local_size_x = 16, local_size_y = 3) in; void main() {}");
+  desc.label = "scan";
+  CHECK(broken_rule(desc) == "");
+  for (const std::uint32_t size : {16u, 32u}) {
+    desc.required_subgroup_size = size;
+    CHECK(broken_rule(desc) == "");
+  }
+  for (const std::uint32_t size : {1u, 4u, 12u, 64u}) {
+    desc.required_subgroup_size = size;
+    check_rule(broken_rule(desc), "scan: a required subgroup size of " + std::to_string(size) +
+                                      ", where the device allows powers of two from 8 to 32");
+  }
+  desc.required_subgroup_size = 8;
+  check_rule(broken_rule(desc),
+             "48 invocations in a workgroup are more than the device's 4 subgroups of the required "
+             "size 8");
+  rhi::DeviceInfo device = able_device();
+  device.capabilities.required_subgroup_size = false;
+  check_rule(broken_rule(desc, device, ErrorCode::unsupported),
+             "scan: device 'able' does not offer required subgroup sizes");
+}
+
+TEST_CASE("full subgroups need a workgroup whose first dimension is a multiple of their size") {
+  rhi::ComputePipelineDesc desc;
+  desc.shader = plain_shader(ShaderStage::compute, "layout(local_size_x_id = 3) in; void main() {}");
+  desc.specialization = {{.id = 3, .value = 48}};
+  desc.full_subgroups = true;
+  desc.label = "scan";
+  CHECK(broken_rule(desc) == "");
+  desc.required_subgroup_size = 32;
+  check_rule(broken_rule(desc),
+             "scan: full subgroups need a workgroup size in dimension 0 that is a multiple of the "
+             "subgroup size 32, which 48 is not");
+  desc.specialization = {{.id = 3, .value = 64}};
+  CHECK(broken_rule(desc) == "");
+  desc.required_subgroup_size = 0;
+  desc.specialization = {{.id = 3, .value = 8}};
+  check_rule(broken_rule(desc), "the subgroup size 16, which 8 is not");
+  rhi::DeviceInfo device = able_device();
+  device.capabilities.full_subgroups = false;
+  check_rule(broken_rule(desc, device, ErrorCode::unsupported), "scan: device 'able' does not offer full subgroups");
+}
+
 }  // namespace

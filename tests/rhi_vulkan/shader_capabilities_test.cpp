@@ -78,3 +78,40 @@ TEST_CASE("a capability that nobody knows is refused by number") {
   spirv[6] = 60000;  // the operand of the first OpCapability
   CHECK_ERROR(unsupported, "60000", vulkan::check_shader_capabilities(spirv, bare_device(), "odd"));
 }
+
+TEST_CASE("workgroup memory that is initialized needs its feature, of Vulkan 1.3 or of the extension") {
+  const std::vector<std::uint32_t> spirv =
+      compile("#extension GL_EXT_null_initializer : require",
+              "shared uint zeros[4] = {}; shared uint others[4]; void main() { others[0] = zeros[0]; }");
+  vulkan::PhysicalDevice device = bare_device();
+  CHECK_ERROR(unsupported, "zeros: the shader needs workgroup memory that is initialized, which device",
+              vulkan::check_shader_capabilities(spirv, device, "zeros"));
+  device.features.vulkan13.shaderZeroInitializeWorkgroupMemory = VK_TRUE;
+  vulkan::check_shader_capabilities(spirv, device, "zeros");
+  device.features.vulkan13.shaderZeroInitializeWorkgroupMemory = VK_FALSE;
+  device.features.zero_initialize_workgroup_memory.shaderZeroInitializeWorkgroupMemory = VK_TRUE;
+  vulkan::check_shader_capabilities(spirv, device, "zeros");
+  CHECK(vulkan::missing_capabilities(compile("", "shared uint s; void main() { s = 1; }"), bare_device()).empty());
+}
+
+TEST_CASE("subgroup-uniform control flow needs its feature") {
+  const std::vector<std::uint32_t> spirv = compile("#extension GL_EXT_subgroup_uniform_control_flow : require",
+                                                   "void main() [[subgroup_uniform_control_flow]] { values[0] = 1; }");
+  vulkan::PhysicalDevice device = bare_device();
+  CHECK_ERROR(unsupported, "the SPIR-V extension SPV_KHR_subgroup_uniform_control_flow",
+              vulkan::check_shader_capabilities(spirv, device, "uniform"));
+  device.features.subgroup_uniform_control_flow.shaderSubgroupUniformControlFlow = VK_TRUE;
+  vulkan::check_shader_capabilities(spirv, device, "uniform");
+}
+
+TEST_CASE("64-bit atomics need buffers or shared memory that have them") {
+  const std::vector<std::uint32_t> spirv = compile(
+      "#extension GL_EXT_shader_explicit_arithmetic_types : require\n#extension GL_EXT_shader_atomic_int64 : require",
+      "shared uint64_t s; void main() { atomicAdd(s, 1ul); }");
+  vulkan::PhysicalDevice device = bare_device();
+  device.features.core.shaderInt64 = VK_TRUE;
+  CHECK_ERROR(unsupported, "the SPIR-V capability Int64Atomics",
+              vulkan::check_shader_capabilities(spirv, device, "atomics"));
+  device.features.vulkan12.shaderSharedInt64Atomics = VK_TRUE;
+  vulkan::check_shader_capabilities(spirv, device, "atomics");
+}
