@@ -102,6 +102,8 @@ struct DeviceDesc {
   /// CPU: a launch that takes longer is stopped in the next round of a loop, and submit throws Error(timeout); what it
   /// has written stays. 0: no limit. A Vulkan driver has a limit of its own, or none.
   std::chrono::milliseconds time_limit{0};
+  /// CPU: gl_SubgroupSize, a power of two up to 32; 0: 8.
+  std::uint32_t subgroup_size = 0;
   std::uint32_t thread_count = 0;           ///< CPU: worker threads, 0 for all that the machine has
   std::filesystem::path kernel_cache = {};  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
                                             ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem

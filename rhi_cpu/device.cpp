@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <new>
 
@@ -15,6 +16,7 @@
 #include "rhi_cpu/compute_pipeline.hpp"
 #include "rhi_cpu/device_state.hpp"
 #include "rhi_cpu/fence.hpp"
+#include "rhi_cpu/kernel/group_limits.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/query_pool.hpp"
 #include "rhi_cpu/ray_tracing_pipeline.hpp"
@@ -203,7 +205,10 @@ DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKer
       workers(desc.thread_count),
       tracer(desc.name == exact_name ? Tracer::Kind::exact : Tracer::Kind::embree, desc.on_message),
       time_limit(desc.time_limit),
-      kernels(std::move(precompiled), {.robust = desc.robust_access, .watched = desc.time_limit.count() > 0},
+      kernels(std::move(precompiled),
+              {.robust = desc.robust_access,
+               .watched = desc.time_limit.count() > 0,
+               .subgroup_size = desc.subgroup_size != 0 ? desc.subgroup_size : kernel::default_subgroup_size},
               desc.kernel_cache, desc.on_message) {}
 
 std::span<const std::string_view> device_names() {
@@ -249,6 +254,11 @@ rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc, std::vector<Precomp
   if (desc.thread_count > most_threads)
     throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
                      fmt::format("a device of {} threads; the most is {}", desc.thread_count, most_threads));
+  if (desc.subgroup_size != 0 &&
+      (!std::has_single_bit(desc.subgroup_size) || desc.subgroup_size > kernel::max_subgroup_size))
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
+                     fmt::format("subgroups of {} invocations; the sizes are powers of two up to {}",
+                                 desc.subgroup_size, kernel::max_subgroup_size));
   return std::make_shared<Device>(std::make_shared<DeviceState>(desc, std::move(precompiled)));
 }
 

@@ -8,6 +8,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi_cpu/cache/kernel_headers.hpp"
+#include "rhi_cpu/translate/supported.hpp"
 #include "rhi_cpu/translate/translate.hpp"
 
 namespace tandem::cpu {
@@ -51,6 +52,7 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
   ContentHasher hasher;
   hasher.add(std::uint64_t{kernel::abi_version}).add(std::uint64_t{translator_version});
   hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched});
+  hasher.add(std::uint64_t{options.subgroup_size});
   for (const KernelHeader& header : kernel_headers()) hasher.add(header.path).add(header.text);
   hasher.add(compiler.path.string()).add(compiler.version);
   hasher.add(kernel_compile_options()).add(processor_identity());
@@ -69,28 +71,36 @@ KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, const Kerne
       on_message_(std::move(on_message)) {}
 
 Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> given,
-                           const std::string& label) {
+                           const std::string& label, std::uint32_t subgroup_size) {
+  KernelOptions options = options_;
+  if (subgroup_size != 0) options.subgroup_size = subgroup_size;
+  // So that other shaders have one kernel for all sizes.
+  if (!declares_subgroups(shader.spirv())) options.subgroup_size = kernel::default_subgroup_size;
   const std::vector<rhi::SpecializationValue> values = complete(shader.reflection(), given);
   const auto found = std::ranges::find_if(
       precompiled_, [&](const PrecompiledKernel& kernel) { return is_made_of(kernel, shader, values); });
-  if (found != precompiled_.end() && !options_.watched) return {.info = found->entry(), .library = nullptr};
+  if (found != precompiled_.end() && !options.watched && options.subgroup_size == kernel::default_subgroup_size)
+    return {.info = found->entry(), .library = nullptr};
 
-  const ContentHash key = key_of(shader.spirv(), values, options_, compiler(label));
+  const ContentHash key = key_of(shader.spirv(), values, options, compiler(label));
   const std::shared_ptr<Entry> known = entry(key);
   const std::lock_guard lock(known->mutex);
   KernelLibraryHandle library = known->library.lock();
   if (library == nullptr) library = cache().find(key, label);
-  if (library == nullptr) library = compile(shader, declared(shader.reflection(), given), key, label);
+  if (library == nullptr) library = compile(shader, declared(shader.reflection(), given), options, key, label);
   known->library = library;
   return {.info = &library->info(), .library = library};
 }
 
 KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
-                                         std::span<const rhi::SpecializationValue> values, const ContentHash& key,
-                                         const std::string& label) {
+                                         std::span<const rhi::SpecializationValue> values, const KernelOptions& options,
+                                         const ContentHash& key, const std::string& label) {
   const auto start = std::chrono::steady_clock::now();
-  const Translation translation = translate(
-      shader.spirv(), label, {.specialization = values, .robust = options_.robust, .watched = options_.watched});
+  const Translation translation = translate(shader.spirv(), label,
+                                            {.specialization = values,
+                                             .robust = options.robust,
+                                             .watched = options.watched,
+                                             .subgroup_size = options.subgroup_size});
   KernelCache& store = cache();
   TemporaryFolder folder = store.make_work_folder(label);
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;

@@ -76,6 +76,9 @@ int main(int argc, char** argv) {
   app.add_option("--entry-symbol", entry_symbol, "name of the function that the kernel exports")->capture_default_str();
   bool robust = false, watched = false;
   app.add_flag("--robust", robust, "keep accesses inside of what is bound, as devices with robust access do");
+  std::uint32_t subgroup_size = tandem::cpu::TranslateOptions().subgroup_size;
+  app.add_option("--subgroup-size", subgroup_size, "invocations of a subgroup, a power of two up to 32")
+      ->capture_default_str();
   app.add_flag("--watched", watched, "let loops look at a watch, as devices with a time limit do");
   app.add_option("--embed", embed, "write C++ that holds the SPIR-V words here");
   app.add_option("--namespace", name_space, "namespace of the embedded words")->capture_default_str();
@@ -86,9 +89,12 @@ int main(int argc, char** argv) {
     if (!embed.empty()) write(embed, embedded_words(words, name_space, name));
     const std::vector<tandem::rhi::SpecializationValue> values = specialization(assignments);
     if (!kernel.empty())
-      write(kernel, tandem::cpu::translate(
-                        words, std::filesystem::path(input).filename().string(),
-                        {.specialization = values, .entry_symbol = entry_symbol, .robust = robust, .watched = watched})
+      write(kernel, tandem::cpu::translate(words, std::filesystem::path(input).filename().string(),
+                                           {.specialization = values,
+                                            .entry_symbol = entry_symbol,
+                                            .robust = robust,
+                                            .watched = watched,
+                                            .subgroup_size = subgroup_size})
                         .source);
   } catch (const std::exception& error) {
     fmt::print(stderr, "tandem-translate: {}\n", error.what());

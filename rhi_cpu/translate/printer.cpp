@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/names/identifiers.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 
 namespace tandem::cpu {
@@ -26,9 +26,13 @@ constexpr std::uint64_t inlining_limit = 50'000;
 
 }  // namespace
 
-Printer::Printer(const std::vector<std::uint32_t>& spirv, const std::string& label,
-                 const rhi::ShaderReflection& reflection, const TranslateOptions& options)
-    : CompilerGLSL(spirv.data(), spirv.size()), label_(label), reflection_(reflection), options_(options) {}
+Printer::Printer(const MarkedModule& module, const std::string& label, const rhi::ShaderReflection& reflection,
+                 const TranslateOptions& options)
+    : CompilerGLSL(module.words.data(), module.words.size()),
+      label_(label),
+      reflection_(reflection),
+      options_(options),
+      marks_{.words = {}, .places = module.places, .loops = module.loops, .depth = module.depth} {}
 
 void Printer::fail(const std::string& what) const { refuse(label_, what); }
 
@@ -39,6 +43,7 @@ std::string Printer::compile() {
   build_function_control_flow_graphs_and_analyze();
   set_up_names();
   set_up_variables();
+  set_up_groups();
   set_up_endings();
   measure_functions();
 
@@ -206,6 +211,7 @@ void Printer::print_module() {
       printed([this] { emit_function(get<SPIRFunction>(ir.default_entry_point), spirv_cross::Bitset()); });
   const std::string constants = printed([this] { print_constants(); });
   const std::string memory = printed([this] { print_struct_memory_functions(); });
+  const std::string group = needs_group() ? printed([this] { print_group(); }) : "";
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
@@ -213,15 +219,22 @@ void Printer::print_module() {
   if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
   if (options_.watched) statement("#include \"rhi_cpu/kernel/watch.hpp\"");
+  if (needs_group()) statement("#include \"rhi_cpu/kernel/workgroups.hpp\"");
+  if (needs_lanes())
+    statement("#include \"rhi_cpu/kernel/lanes.hpp\"");
+  else if (uses_subgroups_)
+    statement("#include \"rhi_cpu/kernel/subgroups.hpp\"");
   statement("");
   statement("namespace {");
   statement("");
   statement("namespace k = tandem::kernel;");
   statement("");
-  statement(struct_declarations_, constants, memory, members, functions, "};");
+  statement(struct_declarations_, constants, memory, group, members, functions, "};");
   statement("");
   if (is_traced())
     print_shader_call();
+  else if (needs_group())
+    print_group_run();
   else
     print_run();
   print_info();
@@ -256,6 +269,8 @@ void Printer::print_members() {
       statement("k::uvec3 built_in_", built_in, ";");
     statement("k::uint built_in_LocalInvocationIndex;");
     if (options_.watched) statement("const k::Watch* watch;");
+    if (needs_group()) statement("Workgroup* own_group;");
+    if (needs_lanes()) statement("k::Lane", lane_types(), " own_lane;");
   }
   if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
@@ -307,7 +322,7 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
     if (!parameters.empty()) parameters += ", ";
     if (!is_pointer(type)) {
       parameters += type_name(parameter.type) + " " + to_name(parameter.id);
-    } else if (is_buffer(type.storage)) {
+    } else if (is_in_memory(type.storage)) {
       if (get<Type>(pointee(parameter.type)).columns > 1) fail("a pointer to a matrix in a buffer as parameter");
       const bool is_constant =
           type.storage == spv::StorageClassPushConstant || type.storage == spv::StorageClassShaderRecordBufferKHR;
@@ -356,6 +371,8 @@ std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
     case spv::BuiltInLocalInvocationIndex:
       return "built_in_LocalInvocationIndex";
     default:
+      if (const std::string text = subgroup_built_in(builtin); !text.empty())
+        return fmt::format("{}({})", type_name(built_in_types_.at(builtin)), text);
       fail("built-in " + rhi::built_in_name(builtin));
   }
 }

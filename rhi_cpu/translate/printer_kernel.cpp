@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/names/kernel_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {

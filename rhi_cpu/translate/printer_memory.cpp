@@ -15,7 +15,9 @@ std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
 
 }  // namespace
 
-bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && is_pointer(type_of(id)); }
+bool Printer::is_buffer_pointer(std::uint32_t id) {
+  return is_in_memory(type_of(id).storage) && is_pointer(type_of(id));
+}
 
 std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const {
   if (!has_member_decoration(struct_type_id, member, spv::DecorationMatrixStride)) return 0;
@@ -36,6 +38,8 @@ Printer::Address Printer::address_of(std::uint32_t pointer_id) {
   if (variable->storage == spv::StorageClassShaderRecordBufferKHR)
     return known("shader_record", reflection_.shader_record_size);
   const std::string name = to_name(pointer_id);
+  if (variable->storage == spv::StorageClassWorkgroup && variable->parameter == nullptr)
+    return known(name.c_str(), workgroup_memory_);
   if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = name};
   const bool is_bound = binding_of(pointer_id) != nullptr;
   return {.bytes = name,

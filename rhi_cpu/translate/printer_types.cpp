@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/names/identifiers.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {
@@ -28,7 +28,7 @@ std::string Printer::type_name(const Type& type) {
   if (is_pointer(type)) {
     const bool is_writable =
         type.storage != spv::StorageClassPushConstant && type.storage != spv::StorageClassShaderRecordBufferKHR;
-    if (!is_buffer(type.storage) || !is_writable) fail("a pointer as a value");
+    if (!is_in_memory(type.storage) || !is_writable) fail("a pointer as a value");
     return "std::byte*";
   }
   if (is_array(type))

@@ -5,6 +5,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi/shader_reflection.hpp"
+#include "rhi_cpu/translate/groups/places.hpp"
 #include "rhi_cpu/translate/prepare.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
@@ -15,7 +16,8 @@ Translation translate(std::span<const std::uint32_t> spirv, const std::string& l
   const rhi::ShaderReflection reflection = rhi::reflect_valid(words, label);
   if (options.watched) words = with_marked_loops(words);
   try {
-    return {Printer(words, label, reflection, options).compile()};
+    const MarkedModule module = has_meetings(words) ? with_marked_places(words) : MarkedModule{.words = words};
+    return {Printer(module, label, reflection, options).compile()};
   } catch (const rhi::Error&) {
     throw;
   } catch (const std::exception& error) {

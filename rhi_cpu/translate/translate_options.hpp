@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
 #include "rhi/pipeline.hpp"
+#include "rhi_cpu/kernel/group_limits.hpp"
 
 namespace tandem::cpu {
 
@@ -17,6 +19,8 @@ struct TranslateOptions {
   bool robust = false;
   /// Loops look at kernel::Dispatch::watch.
   bool watched = false;
+  /// gl_SubgroupSize: 1, 2, 4, 8, 16 or 32.
+  std::uint32_t subgroup_size = kernel::default_subgroup_size;
 };
 
 }  // namespace tandem::cpu
