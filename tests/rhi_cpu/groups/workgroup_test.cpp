@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "rhi/error.hpp"
+#include "rhi_cpu/device.hpp"
 #include "tests/rhi_cpu/groups/device.hpp"
 
 namespace tandem::cpu::test {
