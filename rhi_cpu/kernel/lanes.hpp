@@ -60,7 +60,7 @@ class Subgroups {
   Subgroup& subgroup(std::uint32_t i) { return subgroups_[i]; }
 
   /// Returns when all have come that ever come to this position; subgroup(i).active are they.
-  void meet(std::uint32_t index, const Position<depth>& position) {
+  [[gnu::noinline]] void meet(std::uint32_t index, const Position<depth>& position) {
     Subgroup& own = subgroups_[index / width];
     const LaneMask self = LaneMask{1} << index % width;
     own.positions[index % width] = &position;
@@ -109,7 +109,7 @@ class Subgroups {
   }
 
   /// Who goes on after one of subgroup `i` has come to a barrier or has ended; `count` when all have ended.
-  std::uint32_t next(std::uint32_t i) {
+  [[gnu::noinline]] std::uint32_t next(std::uint32_t i) {
     while (true) {
       Subgroup& subgroup = subgroups_[i];
       if (subgroup.ready == 0 && subgroup.waiting != 0) choose(subgroup);
@@ -128,6 +128,51 @@ class Subgroups {
   Fibres* fibres_ = nullptr;
   std::uint32_t place_ = nowhere;  ///< where the invocations of this turn wait that wait at a barrier
   Subgroup subgroups_[subgroup_count];
+};
+
+// Operations of Lane::apply and Lane::agree.
+
+template <typename Operation, std::uint32_t width, std::uint32_t cluster = width>
+struct Reduction {
+  template <typename T>
+  static void run(T* values, LaneMask active) {
+    kernel::reduce<Operation, width>(values, active, cluster);
+  }
+};
+template <typename Operation, std::uint32_t width>
+struct InclusiveScan {
+  template <typename T>
+  static void run(T* values, LaneMask active) {
+    kernel::inclusive_scan<Operation, width>(values, active);
+  }
+};
+template <typename Operation, std::uint32_t width>
+struct ExclusiveScan {
+  template <typename T>
+  static void run(T* values, LaneMask active) {
+    kernel::exclusive_scan<Operation, width>(values, active);
+  }
+};
+struct AllOf {
+  static bool run(const bool* values, LaneMask active) { return kernel::all_of(values, active); }
+};
+struct AnyOf {
+  static bool run(const bool* values, LaneMask active) { return kernel::any_of(values, active); }
+};
+struct AllEqual {
+  template <typename T>
+  static bool run(const T* values, LaneMask active) {
+    return kernel::all_equal(values, active);
+  }
+};
+struct Ballot {
+  static uvec4 run(const bool* values, LaneMask active) { return kernel::ballot(values, active); }
+};
+struct ValueOfFirst {
+  template <typename T>
+  static T run(const T* values, LaneMask active) {
+    return kernel::value_of_first(values, active);
+  }
 };
 
 /// An invocation as a part of its subgroup.
@@ -162,47 +207,55 @@ class Lane {
 
   bool is_elected() { return first_lane(meet()) == id(); }
 
-  /// compute(values, active) changes the values of those that take part.
-  template <typename T, typename Compute>
-  T apply(const T& value, const Compute& compute) {
+  // One function for all that a kernel does with values of one type: nothing is gained where each is inlined, and
+  // compilers take long.
+
+  /// Operation::run(values, active) changes the values of those that take part.
+  template <typename Operation, typename T>
+  [[gnu::noinline]] T apply(const T value) {
     if constexpr (is_alone) {
       T values[width] = {value};
-      compute(values, LaneMask{1});
+      Operation::run(values, LaneMask{1});
       return values[0];
     }
     put(value);
     return finish<T>([&](LaneMask active) {
       T values[width];
       gather(values, active);
-      compute(values, active);
+      Operation::run(values, active);
       for_each_lane(active,
                     [&](std::uint32_t lane) { std::memcpy(own().slots[lane].value, &values[lane], sizeof(T)); });
     });
   }
 
-  /// What compute(values, active) returns, the same for all that take part.
-  template <typename T, typename Compute>
-  auto agree(const T& value, const Compute& compute) {
-    using Result = decltype(compute(&value, LaneMask{1}));
-    if constexpr (is_alone) return Result(compute(&value, LaneMask{1}));
+  /// What Operation::run(values, active) returns, the same for all that take part.
+  template <typename Operation, typename T>
+  [[gnu::noinline]] auto agree(const T value) {
+    using Result = decltype(Operation::run(&value, LaneMask{1}));
+    if constexpr (is_alone) return Result(Operation::run(&value, LaneMask{1}));
     put(value);
     return finish<Result>([&](LaneMask active) {
       T values[width];
       gather(values, active);
-      const Result result = compute(values, active);
+      const Result result = Operation::run(values, active);
       for_each_lane(active, [&](std::uint32_t lane) { std::memcpy(own().slots[lane].value, &result, sizeof(Result)); });
     });
   }
 
   /// The value of lane `source`.
   template <typename T>
-  T exchange(const T& value, std::uint32_t source) {
+  [[gnu::noinline]] T exchange(const T value, std::uint32_t source) {
     if constexpr (is_alone) return source == 0 ? value : T{};
+    put(value);
     own().slots[id()].source = source;
-    return apply(value, [&](T* values, LaneMask active) {
+    return finish<T>([&](LaneMask active) {
+      T values[width];
+      gather(values, active);
       std::uint32_t sources[width];
       for_each_lane(active, [&](std::uint32_t lane) { sources[lane] = own().slots[lane].source; });
       kernel::shuffle<width>(values, sources, active);
+      for_each_lane(active,
+                    [&](std::uint32_t lane) { std::memcpy(own().slots[lane].value, &values[lane], sizeof(T)); });
     });
   }
 

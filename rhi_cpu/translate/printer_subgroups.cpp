@@ -21,8 +21,8 @@ namespace {
 /// SPV_KHR_subgroup_vote do not have.
 enum class SubgroupShape : std::uint8_t {
   elect,       ///< whether the lane is the lowest
-  agree,       ///< lane.agree(a, k::text)
-  arithmetic,  ///< lane.apply(a, k::reduce<k::text>), or a scan
+  agree,       ///< lane.agree<k::text>(a)
+  arithmetic,  ///< lane.apply<k::Reduction<k::text, size>>(a), or a scan
   exchange,    ///< lane.exchange(a, text), where text says of which lane: {0} is its own number, {1} the operand b, {2}
                ///< the size of a cluster
   ballot       ///< text, of the ballot {1}: {0} is the lane's own number, {2} the operand b, {3} a subgroup's size
@@ -37,16 +37,16 @@ struct SubgroupOperation {
 
 constexpr SubgroupOperation subgroup_operations[] = {
     {spv::OpGroupNonUniformElect, SubgroupShape::elect, ""},
-    {spv::OpGroupNonUniformAll, SubgroupShape::agree, "all_of"},
-    {spv::OpGroupNonUniformAny, SubgroupShape::agree, "any_of"},
-    {spv::OpGroupNonUniformAllEqual, SubgroupShape::agree, "all_equal"},
-    {spv::OpGroupNonUniformBallot, SubgroupShape::agree, "ballot"},
-    {spv::OpGroupNonUniformBroadcastFirst, SubgroupShape::agree, "value_of_first"},
-    {spv::OpSubgroupAllKHR, SubgroupShape::agree, "all_of"},
-    {spv::OpSubgroupAnyKHR, SubgroupShape::agree, "any_of"},
-    {spv::OpSubgroupAllEqualKHR, SubgroupShape::agree, "all_equal"},
-    {spv::OpSubgroupBallotKHR, SubgroupShape::agree, "ballot"},
-    {spv::OpSubgroupFirstInvocationKHR, SubgroupShape::agree, "value_of_first"},
+    {spv::OpGroupNonUniformAll, SubgroupShape::agree, "AllOf"},
+    {spv::OpGroupNonUniformAny, SubgroupShape::agree, "AnyOf"},
+    {spv::OpGroupNonUniformAllEqual, SubgroupShape::agree, "AllEqual"},
+    {spv::OpGroupNonUniformBallot, SubgroupShape::agree, "Ballot"},
+    {spv::OpGroupNonUniformBroadcastFirst, SubgroupShape::agree, "ValueOfFirst"},
+    {spv::OpSubgroupAllKHR, SubgroupShape::agree, "AllOf"},
+    {spv::OpSubgroupAnyKHR, SubgroupShape::agree, "AnyOf"},
+    {spv::OpSubgroupAllEqualKHR, SubgroupShape::agree, "AllEqual"},
+    {spv::OpSubgroupBallotKHR, SubgroupShape::agree, "Ballot"},
+    {spv::OpSubgroupFirstInvocationKHR, SubgroupShape::agree, "ValueOfFirst"},
 
     {spv::OpGroupNonUniformIAdd, SubgroupShape::arithmetic, "Sum"},
     {spv::OpGroupNonUniformFAdd, SubgroupShape::arithmetic, "Sum"},
@@ -131,10 +131,8 @@ void Printer::print_subgroup_operation(const Instruction& i) {
       return define(i, lane() + ".is_elected()");
     case SubgroupShape::agree: {
       const Type& type = type_of(i.operand(a));
-      return define(i,
-                    fmt::format("{}.agree<{}>({}, [](const auto* values, k::LaneMask active) {{ return k::{}(values, "
-                                "active); }})",
-                                lane(), type_name(type), value(i.operand(a)), operation.text));
+      return define(
+          i, fmt::format("{}.agree<k::{}, {}>({})", lane(), operation.text, type_name(type), value(i.operand(a))));
     }
     case SubgroupShape::arithmetic:
       return print_subgroup_arithmetic(i, operation.text, operation.sign);
@@ -158,19 +156,18 @@ void Printer::print_subgroup_arithmetic(const Instruction& i, const char* functi
   const Type& type = get<Type>(i.result_type());
   const BaseType base = with_sign(type.basetype, sign);
   const bool is_reduction = kind == spv::GroupOperationReduce || kind == spv::GroupOperationClusteredReduce;
-  const char* name = is_reduction                               ? "reduce"
-                     : kind == spv::GroupOperationInclusiveScan ? "inclusive_scan"
-                     : kind == spv::GroupOperationExclusiveScan ? "exclusive_scan"
+  const char* name = is_reduction                               ? "Reduction"
+                     : kind == spv::GroupOperationInclusiveScan ? "InclusiveScan"
+                     : kind == spv::GroupOperationExclusiveScan ? "ExclusiveScan"
                                                                 : nullptr;
   if (name == nullptr) fail(rhi::instruction_name(i.op(), i.words()) + " of another kind than a reduction or a scan");
   const std::string cluster =
       kind == spv::GroupOperationClusteredReduce ? ", " + value_as(i.operand(3), SPIRType::UInt) : "";
-  define_as(
-      i,
-      fmt::format("{}.apply<{}>({}, [](auto* values, k::LaneMask active) {{ k::{}<k::{}, {}>(values, active{}); }})",
-                  lane(), vector_name(base, type.vecsize), value_as(operand, base), name, function,
-                  options_.subgroup_size, cluster),
-      base);
+  const std::string type_text = vector_name(base, type.vecsize);
+  define_as(i,
+            fmt::format("{}.apply<k::{}<k::{}, {}{}>, {}>({})", lane(), name, function, options_.subgroup_size, cluster,
+                        type_text, value_as(operand, base)),
+            base);
 }
 
 void Printer::print_ballot_count(const Instruction& i) {
