@@ -115,8 +115,13 @@ constexpr T combined(const T& a, const T& b) {
   return each([](auto x, auto y) { return Operation::of(x, y); }, a, b);
 }
 
-// Arithmetic. Values are combined one after the other, the lowest lane first, (v0 + v1) + v2..., which fixes how floats
-// round; Mesa's CPU driver has the same order. The result of an exclusive scan is the identity in the lowest lane.
+// Arithmetic. Values are combined one after the other, the lowest lane first, ((identity + v0) + v1) + v2..., which
+// fixes how floats round. Mesa's CPU driver has the same order.
+
+template <typename Operation, typename T>
+constexpr T identity_of() {
+  return T(Operation::template identity<component_t<T>>());
+}
 
 /// Each lane gets the combination of all lanes of its cluster, `cluster` consecutive lanes, a power of two.
 template <typename Operation, std::uint32_t width, typename T>
@@ -124,9 +129,8 @@ constexpr void reduce(T* values, LaneMask active, std::uint32_t cluster = width)
   if (cluster == 0 || cluster > width) cluster = width;
   for (std::uint32_t first = 0; first < width; first += cluster) {
     const LaneMask part = active & (lanes_below(cluster) << first);
-    if (part == 0) continue;
-    T result = values[first_lane(part)];
-    for_each_lane(part & (part - 1), [&](std::uint32_t lane) { result = combined<Operation>(result, values[lane]); });
+    T result = identity_of<Operation, T>();
+    for_each_lane(part, [&](std::uint32_t lane) { result = combined<Operation>(result, values[lane]); });
     for_each_lane(part, [&](std::uint32_t lane) { values[lane] = result; });
   }
 }
@@ -134,18 +138,15 @@ constexpr void reduce(T* values, LaneMask active, std::uint32_t cluster = width)
 /// Each lane gets the combination of the lanes up to itself.
 template <typename Operation, std::uint32_t width, typename T>
 constexpr void inclusive_scan(T* values, LaneMask active) {
-  T result = values[first_lane(active)];
-  for_each_lane(active & (active - 1),
-                [&](std::uint32_t lane) { values[lane] = result = combined<Operation>(result, values[lane]); });
+  T result = identity_of<Operation, T>();
+  for_each_lane(active, [&](std::uint32_t lane) { values[lane] = result = combined<Operation>(result, values[lane]); });
 }
 
-/// Each lane gets the combination of the lanes before it.
+/// Each lane gets the combination of the lanes before it; the lowest one the identity.
 template <typename Operation, std::uint32_t width, typename T>
 constexpr void exclusive_scan(T* values, LaneMask active) {
-  const std::uint32_t first = first_lane(active);
-  T result = values[first];
-  values[first] = T(Operation::template identity<component_t<T>>());
-  for_each_lane(active & (active - 1), [&](std::uint32_t lane) {
+  T result = identity_of<Operation, T>();
+  for_each_lane(active, [&](std::uint32_t lane) {
     const T own = values[lane];
     values[lane] = result;
     result = combined<Operation>(result, own);

@@ -10,6 +10,7 @@
 #include <boost/context/fiber.hpp>
 
 #include "rhi_cpu/kernel/abi.hpp"
+#include "rhi_cpu/launch/sanitized_switch.hpp"
 #include "rhi_cpu/launch/stack_memory.hpp"
 
 namespace tandem::cpu {
@@ -19,6 +20,7 @@ namespace tandem::cpu {
 class FibreSet final : private kernel::Fibres {
  public:
   FibreSet();
+  ~FibreSet();
   FibreSet(const FibreSet&) = delete;
   FibreSet& operator=(const FibreSet&) = delete;
 
@@ -31,28 +33,35 @@ class FibreSet final : private kernel::Fibres {
  private:
   using Continuation = boost::context::fiber;
 
+  struct Dropped {};
+
   struct Fibre {
     std::optional<StackMemory> stack = {};  ///< declared before what lies on it
     Continuation rest = {};                 ///< what it goes on with; nothing while it runs or before it first does
+    StackBounds bounds = {};
   };
 
   static void switch_to(kernel::Fibres& fibres, std::uint32_t index);
   [[noreturn]] static void fail(kernel::Fibres& fibres);
   /// Goes on with `to`; what calls is left in `from`.
-  void go_on(Continuation& to, Continuation& from);
-  /// What fibre `index` goes on with.
-  Continuation& rest_of(std::uint32_t index);
-  [[noreturn]] void live(std::uint32_t index);
+  void go_on(Fibre& to, Fibre& from);
+  /// Fibre `index`, which can be gone on with.
+  Fibre& prepared(std::uint32_t index);
+  /// What a fibre does: one function after the other, until drop_all().
+  void live(std::uint32_t index);
+  /// Ends all fibres, wherever they are.
+  void drop_all();
 
   std::vector<std::unique_ptr<Fibre>> fibres_;
-  Continuation caller_;           ///< run(), while fibres run
-  Continuation* left_ = nullptr;  ///< where the one that was left is put
+  Fibre caller_;           ///< run(), while fibres run
+  Fibre* left_ = nullptr;  ///< the one that was gone on from
   std::uint32_t running_ = 0;
   std::uint32_t count_ = 0;
   std::size_t stack_size_ = 0;
   kernel::FibreFunction function_ = nullptr;
   void* context_ = nullptr;
   std::exception_ptr failure_;
+  bool drops_ = false;
 };
 
 }  // namespace tandem::cpu

@@ -95,7 +95,7 @@ void Printer::set_up_names() {
   for (const std::uint32_t id : constants) {
     auto& constant = get<SPIRConstant>(id);
     const Type& type = get<Type>(constant.constant_type);
-    if (type.pointer && !is_buffer(type.storage)) continue;
+    if (type.pointer && !is_buffer(type.storage) && type.storage != spv::StorageClassWorkgroup) continue;
     auto& decoration = ir.meta[id].decoration;
     decoration.builtin = false;
     decoration.decoration_flags.clear(spv::DecorationBuiltIn);
@@ -331,8 +331,10 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
     } else {
       const std::uint32_t target = pointee(parameter.type);
       const bool is_descriptor = type.storage == spv::StorageClassUniformConstant;
-      parameters += (is_descriptor ? descriptor_parameter(get<Type>(target)) : type_name(target) + "&") + " " +
-                    to_name(parameter.id);
+      parameters += (is_descriptor             ? descriptor_parameter(get<Type>(target))
+                     : is_shared_pointer(type) ? type_name(target) + "*"
+                                               : type_name(target) + "&") +
+                    " " + to_name(parameter.id);
     }
   }
   statement(inlined || is_entry ? "[[gnu::always_inline]] " : "", "inline ", type_name(function.return_type), " ",

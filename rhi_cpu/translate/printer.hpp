@@ -130,6 +130,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_struct_memory_functions();
 
   // printer_pointers.cpp: pointers into buffers as values.
+  bool is_pointer_value(std::uint32_t id);
   void set_up_pointers();
   /// Refuses a pointer to what would need more than an address to be loaded.
   void check_pointer_value(std::uint32_t pointer_id, const Address& address) const;
@@ -150,8 +151,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_look();
 
   // printer_atomics.cpp
-  /// A pointer into a shared variable that is no block of bytes.
-  bool is_variable_pointer(std::uint32_t id);
   std::string atomic_call(const Instruction& i, const char* function, BaseType base, const std::string& arguments);
   BaseType atomic_component(const Instruction& i);
   void print_atomic(const Instruction& i, const Operation& operation);
@@ -175,6 +174,11 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_group();
   void print_group_run();
   void print_control_barrier(const Instruction& i);
+  bool is_shared_pointer(const Type& type) const;
+  /// A pointer into a shared variable that is no block of bytes: its value is a C++ pointer.
+  bool is_shared_pointer(std::uint32_t id) { return is_shared_pointer(type_of(id)); }
+  /// What a pointer that is no address points at.
+  std::string place_at(std::uint32_t pointer_id);
 
   // printer_subgroups.cpp
   static bool is_subgroup_operation(spv::Op op);

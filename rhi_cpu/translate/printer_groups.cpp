@@ -24,6 +24,16 @@ bool Printer::is_in_memory(spv::StorageClass storage) const {
   return is_buffer(storage) || (storage == spv::StorageClassWorkgroup && has_workgroup_blocks_);
 }
 
+bool Printer::is_shared_pointer(const Type& type) const {
+  return is_pointer(type) && type.storage == spv::StorageClassWorkgroup && !has_workgroup_blocks_;
+}
+
+std::string Printer::place_at(std::uint32_t pointer_id) {
+  if (!is_shared_pointer(pointer_id)) return value(pointer_id);
+  const bool is_variable = std::ranges::find(workgroup_variables_, pointer_id) != workgroup_variables_.end();
+  return is_variable ? to_name(pointer_id) : fmt::format("(*{})", value(pointer_id));
+}
+
 std::uint32_t Printer::invocation_count() const { return workgroup_size_[0] * workgroup_size_[1] * workgroup_size_[2]; }
 
 bool Printer::needs_fibres() const {

@@ -105,10 +105,12 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
 void Printer::chain_in_variable(const Instruction& i) {
   const std::uint32_t base = i.operand(0);
   std::uint32_t type_id = pointee(expression_type_id(base));
-  std::string text = value(base);
+  std::string text = place_at(base);
   std::size_t k = 1;
   if (type_of(base).storage == spv::StorageClassUniformConstant && is_array(get<Type>(type_id)))
     text = descriptor_element(i, k, type_id);
+  if (i.op() == spv::OpPtrAccessChain)
+    text = fmt::format("{}[std::ptrdiff_t({})]", value(base), value_with_sign(i.operand(k++), Sign::as_signed));
   const Type* type = &get<Type>(type_id);
   for (; k < i.operand_count(); ++k) {
     const auto* constant = maybe_get<SPIRConstant>(i.operand(k));
@@ -117,6 +119,7 @@ void Printer::chain_in_variable(const Instruction& i) {
                                : fmt::format("{}[{}]", text, index_inside(*type, value(i.operand(k))));
     type = &element_type(*type, index);
   }
+  if (is_shared_pointer(get<Type>(i.result_type()))) text = fmt::format("(&{})", text);
   set<SPIRExpression>(i.result(), text, i.result_type(), true);
 }
 
@@ -220,7 +223,7 @@ void Printer::print_load(const Instruction& i) {
   else if (is_descriptor(type) && !is_array(type))
     define(i, descriptor_value(pointer));
   else
-    define(i, value(pointer));
+    define(i, place_at(pointer));
 }
 
 void Printer::print_store(const Instruction& i) { print_store_to(i.operand(0), value(i.operand(1))); }
@@ -230,14 +233,14 @@ void Printer::print_copy_memory(const Instruction& i) {
   if (is_buffer_pointer(from))
     print_store_to(to, guarded_load(pointee(expression_type_id(from)), address_of(from)));
   else
-    print_store_to(to, value(from));
+    print_store_to(to, place_at(from));
 }
 
 void Printer::print_store_to(std::uint32_t pointer_id, const std::string& text) {
   if (is_buffer_pointer(pointer_id))
     statement(guarded_store(pointee(expression_type_id(pointer_id)), address_of(pointer_id), text), ";");
   else
-    statement(value(pointer_id), " = ", text, ";");
+    statement(place_at(pointer_id), " = ", text, ";");
 }
 
 void Printer::print_array_length(const Instruction& i) {

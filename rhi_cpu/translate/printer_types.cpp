@@ -25,6 +25,7 @@ bool Printer::has_halves() const {
 }
 
 std::string Printer::type_name(const Type& type) {
+  if (is_shared_pointer(type)) return type_name(get<Type>(type.parent_type)) + "*";
   if (is_pointer(type)) {
     const bool is_writable =
         type.storage != spv::StorageClassPushConstant && type.storage != spv::StorageClassShaderRecordBufferKHR;
@@ -128,7 +129,7 @@ std::string Printer::scalar_text(const SPIRConstant& constant, BaseType base, st
 
 std::string Printer::constant_text(const SPIRConstant& constant) {
   const Type& type = get<Type>(constant.constant_type);
-  if (is_pointer(type)) return "static_cast<std::byte*>(nullptr)";
+  if (is_pointer(type)) return fmt::format("static_cast<{}>(nullptr)", type_name(type));
   if (type.vecsize == 1 && type.columns == 1) return scalar_text(constant, type.basetype, 0, 0);
   std::string elements;
   for (std::uint32_t column = 0; column < type.columns; ++column)
