@@ -120,6 +120,8 @@ void Printer::chain_in_variable(const Instruction& i) {
     type = &element_type(*type, index);
   }
   if (is_shared_pointer(get<Type>(i.result_type()))) text = fmt::format("(&{})", text);
+  // Where an OpPhi takes it, what it depends on may have changed.
+  if (pointer_values_.contains(i.result())) return define(i, text);
   set<SPIRExpression>(i.result(), text, i.result_type(), true);
 }
 

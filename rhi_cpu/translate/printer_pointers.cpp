@@ -20,21 +20,30 @@ void Printer::set_up_pointers() {
   // SPIRV-Cross would take the address of a variable that an OpPhi picks; a copy of it is a temporary.
   std::vector<std::uint32_t> blocks;
   ir.for_each_typed_id<SPIRBlock>([&](std::uint32_t id, SPIRBlock&) { blocks.push_back(id); });
+  const auto copied = [this](spirv_cross::ID& pointer, SPIRBlock& block) {
+    const auto* variable = maybe_get<SPIRVariable>(pointer);
+    if (variable == nullptr || variable->phi_variable || !is_pointer_value(pointer)) return;
+    const std::uint32_t type = variable->basetype, copy = ir.increase_bound_by(1);
+    spirv_cross::Instruction instruction;
+    instruction.op = spv::OpCopyObject;
+    instruction.offset = static_cast<std::uint32_t>(ir.spirv.size());
+    instruction.length = 3;
+    ir.spirv.insert(ir.spirv.end(), {type, copy, std::uint32_t(pointer)});
+    block.ops.push_back(instruction);
+    pointer = copy;
+  };
   for (const std::uint32_t id : blocks) {
     for (auto& phi : get<SPIRBlock>(id).phi_variables) {
-      const auto* variable = maybe_get<SPIRVariable>(phi.local_variable);
-      if (variable == nullptr || variable->phi_variable || !is_pointer_value(phi.local_variable)) continue;
-      const std::uint32_t type = variable->basetype, copy = ir.increase_bound_by(1);
-      spirv_cross::Instruction instruction;
-      instruction.op = spv::OpCopyObject;
-      instruction.offset = static_cast<std::uint32_t>(ir.spirv.size());
-      instruction.length = 3;
-      ir.spirv.insert(ir.spirv.end(), {type, copy, std::uint32_t(phi.local_variable)});
-      get<SPIRBlock>(phi.parent).ops.push_back(instruction);
-      phi.local_variable = copy;
+      spirv_cross::ID pointer = std::uint32_t(phi.local_variable);
+      copied(pointer, get<SPIRBlock>(phi.parent));
+      phi.local_variable = std::uint32_t(pointer);
+      pointer_values_.insert(phi.local_variable);
     }
-    for (const auto& phi : get<SPIRBlock>(id).phi_variables) pointer_values_.insert(phi.local_variable);
-    pointer_values_.insert(get<SPIRBlock>(id).return_value);
+    SPIRBlock& block = get<SPIRBlock>(id);
+    // A variable's name is what it holds.
+    if (maybe_get<SPIRVariable>(block.return_value) != nullptr && is_shared_pointer(block.return_value))
+      copied(block.return_value, block);
+    pointer_values_.insert(block.return_value);
   }
 }
 
