@@ -22,12 +22,12 @@ std::vector<rhi::DeviceInfo> enumerate_devices(const rhi::MessageCallback& on_me
 }
 
 bool is_device_name(std::string_view word) {
-  return std::ranges::count(cpu::device_names(), word) > 0 || word == "vulkan" || word.starts_with("vulkan:");
+  return cpu::is_device_name(word) || word == "vulkan" || word.starts_with("vulkan:");
 }
 
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   const std::string_view name = desc.name;
-  if (std::ranges::count(cpu::device_names(), name) > 0) {
+  if (cpu::is_device_name(name)) {
     std::vector<cpu::PrecompiledKernel> kernels;
     for (const std::span<const cpu::PrecompiledKernel> some : {shaders::kernels(), probe_shaders::kernels()})
       kernels.insert(kernels.end(), some.begin(), some.end());

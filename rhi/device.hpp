@@ -124,7 +124,8 @@ struct DeviceInfo {
 };
 
 struct DeviceDesc {
-  std::string name = "cpu";         ///< "cpu", "cpu-exact", "vulkan" (the first that qualifies), "vulkan:N"
+  /// "cpu", "cpu-scalar" (the same with one lane), "cpu-exact", "vulkan" (the first that qualifies) or "vulkan:N"
+  std::string name = "cpu";
   bool driver_validation = false;   ///< Vulkan: the Khronos validation layer, an error when it is not installed
   MessageCallback on_message = {};  ///< warnings, driver and validation messages
   /// What a shader accesses outside of a buffer, an image or an array of descriptors reads as zero and is not written,
@@ -135,6 +136,12 @@ struct DeviceDesc {
   /// CPU: a launch that takes longer is stopped in the next round of a loop, and submit throws Error(timeout); what it
   /// has written stays. 0: no limit. A Vulkan driver has a limit of its own, or none.
   std::chrono::milliseconds time_limit{0};
+  /// CPU: gl_SubgroupSize, a power of two up to 32; 0: 8.
+  std::uint32_t subgroup_size = 0;
+  /// CPU: invocations that a compute kernel compiled at run time runs at once, in SIMD registers: 4, 8, 16 or 32, or 1,
+  /// one after the other. A kernel with subgroup operations has its subgroup's size in place of any number but 1. 0:
+  /// the device chooses. Results are the same.
+  std::uint32_t lanes = 0;
   std::uint32_t thread_count = 0;           ///< CPU: worker threads, 0 for all that the machine has
   std::filesystem::path kernel_cache = {};  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
                                             ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem

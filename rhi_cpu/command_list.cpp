@@ -14,6 +14,7 @@
 #include "rhi_cpu/bind_group.hpp"
 #include "rhi_cpu/buffer.hpp"
 #include "rhi_cpu/compute_pipeline.hpp"
+#include "rhi_cpu/launch/launch_fibres.hpp"
 #include "rhi_cpu/launch/launch_watch.hpp"
 #include "rhi_cpu/query_pool.hpp"
 #include "rhi_cpu/ray_launch.hpp"
@@ -64,7 +65,10 @@ void run(const ComputePipeline& pipeline, std::span<const std::shared_ptr<BindGr
   const std::uint64_t count = std::uint64_t{workgroup_count[0]} * workgroup_count[1] * workgroup_count[2];
   device.workers.for_each_range(count, [&](std::uint64_t first, std::uint64_t end) {
     watch.look();
-    kernel.run(dispatch, first, end);
+    const LaunchFibres fibres(device.fibres, pipeline.label());
+    kernel::Dispatch range = dispatch;
+    range.fibres = fibres.host();
+    kernel.run(range, first, end);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <new>
 
@@ -15,6 +16,7 @@
 #include "rhi_cpu/compute_pipeline.hpp"
 #include "rhi_cpu/device_state.hpp"
 #include "rhi_cpu/fence.hpp"
+#include "rhi_cpu/kernel/group_limits.hpp"
 #include "rhi_cpu/kernel/shader_call.hpp"
 #include "rhi_cpu/query_pool.hpp"
 #include "rhi_cpu/ray_tracing_pipeline.hpp"
@@ -31,6 +33,7 @@ namespace {
 constexpr std::uint32_t most_threads = 4096;
 
 constexpr std::string_view embree_name = "cpu";
+constexpr std::string_view scalar_name = "cpu-scalar";
 constexpr std::string_view exact_name = "cpu-exact";
 
 class Device final : public rhi::Device {
@@ -161,10 +164,10 @@ rhi::Limits limits() {
           .max_texel_buffer_elements = 1u << 27,
           .max_workgroup_size = {1024, 1024, 1024},
           .max_workgroup_invocations = 1024,
-          .workgroup_memory_size = 0,
-          .subgroup_size = 1,
+          .workgroup_memory_size = kernel::max_workgroup_memory,
+          .subgroup_size = kernel::default_subgroup_size,
           .min_subgroup_size = 1,
-          .max_subgroup_size = 1,
+          .max_subgroup_size = kernel::max_subgroup_size,
           .max_workgroup_subgroups = 1024,
           .max_workgroup_count = {0x7FFFFFFF, 65535, 65535},
           .max_bind_groups = 32,
@@ -201,19 +204,34 @@ std::array<rhi::FormatSupport, rhi::texture_format_count> format_support() {
   return formats;
 }
 
+rhi::DeviceInfo info_of(const rhi::DeviceDesc& desc) {
+  rhi::DeviceInfo info = device_info(desc.name);
+  if (desc.subgroup_size != 0) info.limits.subgroup_size = desc.subgroup_size;
+  return info;
+}
+
 }  // namespace
 
 DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled)
-    : info(device_info(desc.name)),
+    : info(info_of(desc)),
       workers(desc.thread_count),
       tracer(desc.name == exact_name ? Tracer::Kind::exact : Tracer::Kind::embree, desc.on_message),
       time_limit(desc.time_limit),
-      kernels(std::move(precompiled), {.robust = desc.robust_access, .watched = desc.time_limit.count() > 0},
+      kernels(std::move(precompiled),
+              {.robust = desc.robust_access,
+               .watched = desc.time_limit.count() > 0,
+               .subgroup_size = info.limits.subgroup_size,
+               .lanes = desc.name == scalar_name ? 1 : desc.lanes},
               desc.kernel_cache, desc.on_message) {}
 
 std::span<const std::string_view> device_names() {
   static constexpr std::array names = {embree_name, exact_name};
   return names;
+}
+
+bool is_device_name(std::string_view name) {
+  const std::span<const std::string_view> names = device_names();
+  return name == scalar_name || std::find(names.begin(), names.end(), name) != names.end();
 }
 
 rhi::DeviceInfo device_info(std::string_view name) {
@@ -242,20 +260,50 @@ rhi::DeviceInfo device_info(std::string_view name) {
                            .shader_float16 = true,
                            .shader_float64 = true,
                            .timestamps = true,
+                           .zeroed_workgroup_memory = true,
+                           .workgroup_memory_layout = true,
+                           .workgroup_memory_layout_8bit = true,
+                           .workgroup_memory_layout_16bit = true,
+                           .shared_int64_atomics = true,
+                           .shared_float32_atomics = true,
+                           .shared_float32_atomic_add = true,
+                           .shared_float32_atomic_min_max = true,
+                           .shared_float64_atomic_add = true,
+                           .subgroup_basic = true,
+                           .subgroup_vote = true,
+                           .subgroup_arithmetic = true,
+                           .subgroup_ballot = true,
+                           .subgroup_shuffle = true,
+                           .subgroup_shuffle_relative = true,
+                           .subgroup_clustered = true,
+                           .subgroup_quad = true,
+                           .subgroup_rotate = true,
+                           .subgroup_clustered_rotate = true,
+                           .subgroup_extended_types = true,
                            .required_subgroup_size = true,
-                           .full_subgroups = true},
+                           .full_subgroups = true,
+                           .subgroup_uniform_control_flow = true,
+                           .maximal_reconvergence = true},
           .limits = limits(),
           .formats = format_support(),
           .spirv_capabilities = supported_capabilities()};
 }
 
 rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc, std::vector<PrecompiledKernel> precompiled) {
-  const std::span<const std::string_view> names = device_names();
-  if (std::find(names.begin(), names.end(), desc.name) == names.end())
+  if (!is_device_name(desc.name))
     throw rhi::Error(rhi::ErrorCode::no_such_device, desc.name, "there is no such CPU device");
   if (desc.thread_count > most_threads)
     throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
                      fmt::format("a device of {} threads; the most is {}", desc.thread_count, most_threads));
+  if (desc.subgroup_size != 0 &&
+      (!std::has_single_bit(desc.subgroup_size) || desc.subgroup_size > kernel::max_subgroup_size))
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
+                     fmt::format("subgroups of {} invocations; the sizes are powers of two up to {}",
+                                 desc.subgroup_size, kernel::max_subgroup_size));
+  if (desc.lanes != 0 &&
+      (!std::has_single_bit(desc.lanes) || desc.lanes > kernel::max_subgroup_size || desc.lanes == 2))
+    throw rhi::Error(rhi::ErrorCode::invalid_argument, desc.name,
+                     fmt::format("kernels of {} lanes; there are 1, 4, 8, 16 and 32", desc.lanes));
   return std::make_shared<Device>(std::make_shared<DeviceState>(desc, std::move(precompiled)));
 }
 

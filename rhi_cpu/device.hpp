@@ -14,6 +14,9 @@ namespace tandem::cpu {
 /// "cpu" and "cpu-exact".
 std::span<const std::string_view> device_names();
 
+/// Those, and "cpu-scalar": "cpu" with DeviceDesc::lanes 1.
+bool is_device_name(std::string_view name);
+
 /// @param name one of device_names()
 rhi::DeviceInfo device_info(std::string_view name);
 

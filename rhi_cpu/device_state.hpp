@@ -12,6 +12,7 @@
 #include "rhi_cpu/bottom_level_registry.hpp"
 #include "rhi_cpu/cache/kernel_store.hpp"
 #include "rhi_cpu/cache/precompiled_kernel.hpp"
+#include "rhi_cpu/launch/launch_fibres.hpp"
 #include "rhi_cpu/tracer.hpp"
 #include "rhi_cpu/workers.hpp"
 
@@ -26,6 +27,7 @@ struct DeviceState {
   Tracer tracer;
   std::chrono::milliseconds time_limit;  ///< of a launch; 0: none
   KernelStore kernels;
+  FibrePool fibres;
   BottomLevelRegistry bottom_levels;
   std::mutex submission;  ///< held while a command list executes
 };

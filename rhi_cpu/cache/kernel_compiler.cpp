@@ -113,6 +113,16 @@ std::string processor_identity() {
   return identity;
 }
 
+std::uint32_t native_lanes() {
+#if defined(__x86_64__)
+  return __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0 ? 16
+         : __builtin_cpu_supports("avx2") != 0                                              ? 8
+                                                                                            : 4;
+#else
+  return 4;
+#endif
+}
+
 std::string processor_name() { return processor_property("model name"); }
 
 std::string kernel_compile_options() { return fmt::format("{}", fmt::join(options(), " ")); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -18,6 +19,9 @@ KernelCompiler find_kernel_compiler(const std::string& label);
 
 /// The processor's model and features, which the code made for it depends on.
 std::string processor_identity();
+
+/// The lanes of a 32-bit number that fill the processor's widest registers: 4, 8 or 16.
+std::uint32_t native_lanes();
 
 /// The processor's name for people, "" when the system does not say.
 std::string processor_name();

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <fstream>
 
 #include <fmt/format.h>
 
 #include "rhi/error.hpp"
 #include "rhi_cpu/cache/kernel_headers.hpp"
+#include "rhi_cpu/translate/supported.hpp"
 #include "rhi_cpu/translate/translate.hpp"
 
 namespace tandem::cpu {
@@ -51,13 +51,25 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
                    const KernelOptions& options, const KernelCompiler& compiler) {
   ContentHasher hasher;
   hasher.add(std::uint64_t{kernel::abi_version}).add(std::uint64_t{translator_version});
-  hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched}).add(std::uint64_t{options.lanes});
+  hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched});
+  hasher.add(std::uint64_t{options.subgroup_size}).add(std::uint64_t{options.lanes});
   for (const KernelHeader& header : kernel_headers()) hasher.add(header.path).add(header.text);
   hasher.add(compiler.path.string()).add(compiler.version);
   hasher.add(kernel_compile_options()).add(processor_identity());
   hasher.add(std::as_bytes(spirv));
   for (const rhi::SpecializationValue& value : values) hasher.add(std::uint64_t{value.id}).add(value.value);
   return hasher.hash();
+}
+
+/// TranslateOptions::lanes of a shader.
+std::uint32_t lanes_of(const rhi::ShaderModule& shader, bool has_subgroups, const KernelOptions& options) {
+  if (shader.reflection().stage != rhi::ShaderStage::compute || options.lanes == 1) return 0;
+  if (has_subgroups) return options.subgroup_size >= 4 ? options.subgroup_size : 0;
+  if (options.lanes != 0) return options.lanes;
+  // Rays of neighbours soon go different ways, and of a workgroup of one invocation no lane but one does anything.
+  const auto& size = shader.reflection().workgroup_size;
+  if (declares_ray_queries(shader.spirv()) || std::uint64_t{size[0]} * size[1] * size[2] == 1) return 0;
+  return native_lanes();
 }
 
 }  // namespace
@@ -67,38 +79,50 @@ KernelStore::KernelStore(std::vector<PrecompiledKernel> precompiled, const Kerne
     : precompiled_(std::move(precompiled)),
       options_(options),
       cache_folder_(std::move(cache_folder)),
-      on_message_(std::move(on_message)) {
-  if (const char* lanes = std::getenv("TANDEM_LANES")) options_.lanes = std::uint32_t(std::atoi(lanes));
-}
+      on_message_(std::move(on_message)) {}
 
 Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> given,
-                           const std::string& label) {
+                           const std::string& label, std::uint32_t subgroup_size) {
+  KernelOptions options = options_;
+  if (subgroup_size != 0) options.subgroup_size = subgroup_size;
+  // So that other shaders have one kernel for all sizes.
+  const bool has_subgroups = declares_subgroups(shader.spirv());
+  if (!has_subgroups) options.subgroup_size = kernel::default_subgroup_size;
   const std::vector<rhi::SpecializationValue> values = complete(shader.reflection(), given);
   const auto found = std::ranges::find_if(
       precompiled_, [&](const PrecompiledKernel& kernel) { return is_made_of(kernel, shader, values); });
-  if (found != precompiled_.end() && !options_.watched && options_.lanes == 0)
-    return {.info = found->entry(), .library = nullptr};
+  const bool is_usual = options.subgroup_size == kernel::default_subgroup_size && options.lanes <= 1;
+  if (found != precompiled_.end() && !options.watched && is_usual) return {.info = found->entry(), .library = nullptr};
+  options.lanes = lanes_of(shader, has_subgroups, options);
 
-  const ContentHash key = key_of(shader.spirv(), values, options_, compiler(label));
+  const ContentHash key = key_of(shader.spirv(), values, options, compiler(label));
   const std::shared_ptr<Entry> known = entry(key);
   const std::lock_guard lock(known->mutex);
   KernelLibraryHandle library = known->library.lock();
   if (library == nullptr) library = cache().find(key, label);
-  if (library == nullptr) library = compile(shader, declared(shader.reflection(), given), key, label);
+  if (library == nullptr) library = compile(shader, declared(shader.reflection(), given), options, key, label);
   known->library = library;
   return {.info = &library->info(), .library = library};
 }
 
 KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
-                                         std::span<const rhi::SpecializationValue> values, const ContentHash& key,
-                                         const std::string& label) {
+                                         std::span<const rhi::SpecializationValue> values, const KernelOptions& options,
+                                         const ContentHash& key, const std::string& label) {
   const auto start = std::chrono::steady_clock::now();
-  const bool is_compute = shader.reflection().stage == rhi::ShaderStage::compute;
-  const Translation translation = translate(shader.spirv(), label,
-                                            {.specialization = values,
-                                             .robust = options_.robust,
-                                             .watched = options_.watched,
-                                             .lanes = is_compute ? options_.lanes : 0});
+  TranslateOptions how = {.specialization = values,
+                          .robust = options.robust,
+                          .watched = options.watched,
+                          .subgroup_size = options.subgroup_size,
+                          .lanes = options.lanes};
+  Translation translation;
+  try {
+    translation = translate(shader.spirv(), label, how);
+  } catch (const rhi::Error& error) {
+    // What the wide form does not have.
+    if (how.lanes == 0 || error.code() != rhi::ErrorCode::unsupported) throw;
+    how.lanes = 0;
+    translation = translate(shader.spirv(), label, how);
+  }
   KernelCache& store = cache();
   TemporaryFolder folder = store.make_work_folder(label);
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;

@@ -16,6 +16,7 @@
 #include "rhi_cpu/cache/kernel_compiler.hpp"
 #include "rhi_cpu/cache/kernel_library.hpp"
 #include "rhi_cpu/cache/precompiled_kernel.hpp"
+#include "rhi_cpu/kernel/group_limits.hpp"
 
 namespace tandem::cpu {
 
@@ -23,7 +24,8 @@ namespace tandem::cpu {
 struct KernelOptions {
   bool robust = false;
   bool watched = false;
-  std::uint32_t lanes = 0;
+  std::uint32_t subgroup_size = kernel::default_subgroup_size;
+  std::uint32_t lanes = 0;  ///< DeviceDesc::lanes; of one kernel: TranslateOptions::lanes
 };
 
 /// Native code that runs a shader.
@@ -38,15 +40,16 @@ struct Kernel {
 class KernelStore {
  public:
   /// Precompiled kernels are used where they are: their shaders are known to stay inside of what is bound. None of them
-  /// is watched.
+  /// is watched, and their subgroups have the usual size.
   KernelStore(std::vector<PrecompiledKernel> precompiled, const KernelOptions& options,
               std::filesystem::path cache_folder, rhi::MessageCallback on_message);
 
   /// Throws Error(unsupported) for SPIR-V that cannot be translated, Error(shader_compilation) when there is no
   /// compiler or it fails, Error(io) when the cache fails.
   /// @param values specialisation; constants that are not named have their defaults
+  /// @param subgroup_size that the pipeline asks for; 0: that of the options
   Kernel kernel(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> values,
-                const std::string& label);
+                const std::string& label, std::uint32_t subgroup_size = 0);
 
  private:
   /// What is known of one key. `mutex` is held while its library is made.
@@ -62,7 +65,7 @@ class KernelStore {
   std::filesystem::path headers(const std::string& label);
   std::shared_ptr<Entry> entry(const ContentHash& key);
   KernelLibraryHandle compile(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> values,
-                              const ContentHash& key, const std::string& label);
+                              const KernelOptions& options, const ContentHash& key, const std::string& label);
 
   std::vector<PrecompiledKernel> precompiled_;
   KernelOptions options_;

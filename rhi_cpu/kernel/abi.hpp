@@ -8,7 +8,7 @@
 namespace tandem::kernel {
 
 /// Raised whenever something in kernel/ changes that a compiled kernel depends on.
-inline constexpr std::uint32_t abi_version = 3;
+inline constexpr std::uint32_t abi_version = 4;
 
 /// One element of one binding. A buffer: its bytes. An acceleration structure: `data` points at a kernel::TopLevel, or
 /// is null for one that no ray meets. An image or a texel buffer: `data` points at a kernel::Image, a sampler: at a
@@ -86,6 +86,27 @@ struct Watch {
   void (*look)(const Watch& watch);  ///< throws to end the launch
 };
 
+/// The fibres of a workgroup while they run: invocations (or subgroups) on stacks of their own, one of which runs at a
+/// time, all on one thread. Who goes on when is the kernel's to say.
+struct Fibres {
+  /// Fibre `index` goes on, or begins, in place of the one that calls, which stays where it is until it is switched to.
+  void (*switch_to)(Fibres& fibres, std::uint32_t index);
+  /// Throws what ends a launch in which not all invocations of a workgroup reach the same barrier.
+  void (*fail)(Fibres& fibres);
+};
+
+/// What fibre `index` does. @return the fibre that goes on when it has ended; their number when all have
+using FibreFunction = std::uint32_t (*)(void* context, Fibres& fibres, std::uint32_t index);
+
+/// Where fibres come from.
+struct FibreHost {
+  /// Runs function(context, fibres, 0), and the others as they are switched to, until one returns `count`; those that
+  /// have not ended are dropped. What a fibre throws ends all of them and is thrown here.
+  /// @param stack_size bytes that a fibre may need
+  void (*run)(const FibreHost& host, std::uint32_t count, std::size_t stack_size, FibreFunction function,
+              void* context);
+};
+
 /// One run of a kernel.
 struct Dispatch {
   const Resource* resources = nullptr;  ///< KernelInfo::resource_count of them
@@ -93,6 +114,7 @@ struct Dispatch {
   std::uint32_t workgroup_count[3] = {1, 1, 1};
   std::uint32_t base_workgroup[3] = {0, 0, 0};  ///< id of the first
   const Watch* watch = nullptr;                 ///< for kernels that look at it
+  const FibreHost* fibres = nullptr;            ///< for kernels whose invocations wait for each other
 };
 
 /// rhi::BindingKind.

@@ -76,6 +76,9 @@ int main(int argc, char** argv) {
   app.add_option("--entry-symbol", entry_symbol, "name of the function that the kernel exports")->capture_default_str();
   bool robust = false, watched = false;
   app.add_flag("--robust", robust, "keep accesses inside of what is bound, as devices with robust access do");
+  std::uint32_t subgroup_size = tandem::cpu::TranslateOptions().subgroup_size;
+  app.add_option("--subgroup-size", subgroup_size, "invocations of a subgroup, a power of two up to 32")
+      ->capture_default_str();
   app.add_flag("--watched", watched, "let loops look at a watch, as devices with a time limit do");
   std::uint32_t lanes = 0;
   app.add_option("--lanes", lanes, "invocations that the kernel runs at once (4, 8, 16 or 32); 0: one after the other")
@@ -94,6 +97,7 @@ int main(int argc, char** argv) {
                                             .entry_symbol = entry_symbol,
                                             .robust = robust,
                                             .watched = watched,
+                                            .subgroup_size = subgroup_size,
                                             .lanes = lanes})
                         .source);
   } catch (const std::exception& error) {

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/names/identifiers.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 
 namespace tandem::cpu {
@@ -26,9 +26,13 @@ constexpr std::uint64_t inlining_limit = 50'000;
 
 }  // namespace
 
-Printer::Printer(const std::vector<std::uint32_t>& spirv, const std::string& label,
-                 const rhi::ShaderReflection& reflection, const TranslateOptions& options)
-    : CompilerGLSL(spirv.data(), spirv.size()), label_(label), reflection_(reflection), options_(options) {}
+Printer::Printer(const MarkedModule& module, const std::string& label, const rhi::ShaderReflection& reflection,
+                 const TranslateOptions& options)
+    : CompilerGLSL(module.words.data(), module.words.size()),
+      label_(label),
+      reflection_(reflection),
+      options_(options),
+      marks_{.words = {}, .places = module.places, .loops = module.loops, .depth = module.depth} {}
 
 void Printer::fail(const std::string& what) const { refuse(label_, what); }
 
@@ -39,6 +43,7 @@ std::string Printer::compile() {
   build_function_control_flow_graphs_and_analyze();
   set_up_names();
   set_up_variables();
+  set_up_groups();
   set_up_endings();
   measure_functions();
   if (is_wide()) analyze_uniformity();
@@ -105,7 +110,7 @@ void Printer::set_up_names() {
   for (const std::uint32_t id : constants) {
     auto& constant = get<SPIRConstant>(id);
     const Type& type = get<Type>(constant.constant_type);
-    if (type.pointer && !is_buffer(type.storage)) continue;
+    if (type.pointer && !is_buffer(type.storage) && type.storage != spv::StorageClassWorkgroup) continue;
     auto& decoration = ir.meta[id].decoration;
     decoration.builtin = false;
     decoration.decoration_flags.clear(spv::DecorationBuiltIn);
@@ -225,6 +230,7 @@ void Printer::print_module() {
   });
   const std::string constants = printed([this] { print_constants(); });
   const std::string memory = printed([this] { print_struct_memory_functions(); });
+  const std::string group = needs_group() ? printed([this] { print_group(); }) : "";
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
   statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
@@ -236,15 +242,24 @@ void Printer::print_module() {
   if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
   if (options_.watched) statement("#include \"rhi_cpu/kernel/watch.hpp\"");
+  if (needs_group()) statement("#include \"rhi_cpu/kernel/workgroups.hpp\"");
+  if (is_wide() && uses_subgroups_)
+    statement("#include \"rhi_cpu/kernel/wide/together.hpp\"");
+  else if (needs_lanes())
+    statement("#include \"rhi_cpu/kernel/lanes.hpp\"");
+  else if (uses_subgroups_)
+    statement("#include \"rhi_cpu/kernel/subgroups.hpp\"");
   statement("");
   statement("namespace {");
   statement("");
   statement("namespace k = tandem::kernel;");
   statement("");
-  statement(struct_declarations_, constants, memory, members, functions, "};");
+  statement(struct_declarations_, constants, memory, group, members, functions, "};");
   statement("");
   if (is_traced())
     print_shader_call();
+  else if (needs_group())
+    print_group_run();
   else
     print_run();
   print_info();
@@ -281,6 +296,8 @@ void Printer::print_members() {
       statement(wide ? "k::wide_t<k::uvec3>" : "k::uvec3", " built_in_", built_in, ";");
     statement(wide ? "k::Lanes<k::uint>" : "k::uint", " built_in_LocalInvocationIndex;");
     if (options_.watched) statement("const k::Watch* watch;");
+    if (needs_group()) statement("Workgroup* own_group;");
+    if (needs_lanes()) statement("k::Lane", lane_types(), " own_lane;");
   }
   if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
@@ -334,7 +351,7 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
     if (!parameters.empty()) parameters += ", ";
     if (!is_pointer(type)) {
       parameters += type_name(parameter.type) + " " + to_name(parameter.id);
-    } else if (is_buffer(type.storage)) {
+    } else if (is_in_memory(type.storage)) {
       if (get<Type>(pointee(parameter.type)).columns > 1) fail("a pointer to a matrix in a buffer as parameter");
       const bool is_constant =
           type.storage == spv::StorageClassPushConstant || type.storage == spv::StorageClassShaderRecordBufferKHR;
@@ -343,8 +360,10 @@ void Printer::emit_function_prototype(SPIRFunction& function, const spirv_cross:
     } else {
       const std::uint32_t target = pointee(parameter.type);
       const bool is_descriptor = type.storage == spv::StorageClassUniformConstant;
-      parameters += (is_descriptor ? descriptor_parameter(get<Type>(target)) : type_name(target) + "&") + " " +
-                    to_name(parameter.id);
+      parameters += (is_descriptor             ? descriptor_parameter(get<Type>(target))
+                     : is_shared_pointer(type) ? type_name(target) + "*"
+                                               : type_name(target) + "&") +
+                    " " + to_name(parameter.id);
     }
   }
   statement(inlined || is_entry ? "[[gnu::always_inline]] " : "", "inline ", type_name(function.return_type), " ",
@@ -383,6 +402,8 @@ std::string Printer::builtin_to_glsl(spv::BuiltIn builtin, spv::StorageClass) {
     case spv::BuiltInLocalInvocationIndex:
       return "built_in_LocalInvocationIndex";
     default:
+      if (const std::string text = subgroup_built_in(builtin); !text.empty())
+        return is_wide() ? text : fmt::format("{}({})", type_name(built_in_types_.at(builtin)), text);
       fail("built-in " + rhi::built_in_name(builtin));
   }
 }

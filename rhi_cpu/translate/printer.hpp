@@ -15,6 +15,7 @@
 
 #include "rhi/shader_reflection.hpp"
 #include "rhi_cpu/translate/extended_instructions.hpp"
+#include "rhi_cpu/translate/groups/places.hpp"
 #include "rhi_cpu/translate/instruction.hpp"
 #include "rhi_cpu/translate/operations.hpp"
 #include "rhi_cpu/translate/scalar_types.hpp"
@@ -37,9 +38,9 @@ namespace tandem::cpu {
 /// members of a struct Invocation that lives on the stack for one invocation.
 class Printer : public spirv_cross::CompilerGLSL {
  public:
-  /// @param spirv a module from prepare()
+  /// @param module from prepare(), with places where it has subgroup operations
   /// @param reflection of the same words
-  Printer(const std::vector<std::uint32_t>& spirv, const std::string& label, const rhi::ShaderReflection& reflection,
+  Printer(const MarkedModule& module, const std::string& label, const rhi::ShaderReflection& reflection,
           const TranslateOptions& options);
 
   /// The translation unit. Throws rhi::Error(unsupported), or what SPIRV-Cross throws.
@@ -97,6 +98,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_constants();
   void print_run();
   void print_wide_run();
+  /// The lanes of a subgroup that are invocations.
+  std::string entry_mask() const;
   void print_info();
   const rhi::ShaderBinding* binding_of(std::uint32_t variable) const;
   std::uint32_t first_resource_of(std::uint32_t variable) const;
@@ -148,6 +151,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_struct_memory_functions();
 
   // printer_pointers.cpp: pointers into buffers as values.
+  bool is_pointer_value(std::uint32_t id);
   void set_up_pointers();
   /// Refuses a pointer to what would need more than an address to be loaded.
   void check_pointer_value(std::uint32_t pointer_id, const Address& address) const;
@@ -174,6 +178,48 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_atomic_load(const Instruction& i);
   void print_atomic_store(const Instruction& i);
   void print_compare_exchange(const Instruction& i);
+
+  // printer_groups.cpp: workgroup memory and barriers.
+  void set_up_groups();
+  /// Storage classes whose pointers are addresses.
+  bool is_in_memory(spv::StorageClass storage) const;
+  std::uint32_t invocation_count() const;
+  bool needs_lanes() const { return marks_.depth > 0; }
+  /// Invocations of a workgroup, or in the wide form its subgroups.
+  std::uint32_t fibre_count() const;
+  bool needs_fibres() const;
+  /// Whether there is a struct Workgroup.
+  bool needs_group() const;
+  bool is_of_subgroup(const Instruction& barrier) const;
+  /// The template arguments of k::Subgroups and k::Lane.
+  std::string lane_types() const;
+  std::uint32_t stack_size() const;
+  void print_group();
+  void print_group_run();
+  void print_invoke();
+  void print_control_barrier(const Instruction& i);
+  bool is_shared_pointer(const Type& type) const;
+  /// A pointer into a shared variable that is no block of bytes: its value is a C++ pointer.
+  bool is_shared_pointer(std::uint32_t id) { return is_shared_pointer(type_of(id)); }
+  /// What a pointer that is no address points at.
+  std::string place_at(std::uint32_t pointer_id);
+
+  // printer_subgroups.cpp
+  static bool is_subgroup_operation(spv::Op op);
+  /// Whether it asks a ballot, and no other lane.
+  static bool is_ballot_query(spv::Op op);
+  /// What the place that was last marked adds to an invocation's position.
+  std::string place_words() const;
+  /// The k::Lane of the invocation, at that place.
+  std::string lane() const;
+  /// gl_SubgroupInvocationID.
+  std::string lane_number() const;
+  void print_mark(const Instruction& i);
+  void print_subgroup_operation(const Instruction& i);
+  void print_subgroup_arithmetic(const Instruction& i, const char* function, Sign sign);
+  void print_ballot_count(const Instruction& i);
+  /// "" for what is none of a subgroup.
+  std::string subgroup_built_in(spv::BuiltIn built_in);
 
   // printer_composites.cpp: calls, and values made of values.
   void print_call(const Instruction& i);
@@ -343,6 +389,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string label_;
   rhi::ShaderReflection reflection_;
   TranslateOptions options_;
+  MarkedModule marks_;  ///< without its words
   std::array<std::uint32_t, 3> workgroup_size_ = {1, 1, 1};
   std::unordered_map<std::uint32_t, std::string> names_;           ///< of Function and Private variables' declarations
   std::unordered_map<std::uint32_t, std::uint32_t> initializers_;  ///< constant that a Function variable starts as
@@ -354,7 +401,14 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_set<std::uint32_t> composite_constants_;
   std::unordered_map<std::uint32_t, std::uint64_t> inlined_size_;  ///< instructions of a function with all its callees
   bool has_line_numbers_ = false;
-  bool samples_ = false;                                             ///< needs rhi_cpu/kernel/sampling.hpp
+  bool samples_ = false;                ///< needs rhi_cpu/kernel/sampling.hpp
+  bool uses_subgroups_ = false;         ///< needs rhi_cpu/kernel/subgroups.hpp
+  bool has_barriers_ = false;           ///< of the workgroup
+  bool has_workgroup_blocks_ = false;   ///< shared variables are blocks, of bytes
+  std::uint32_t workgroup_memory_ = 0;  ///< bytes of such blocks
+  std::vector<std::uint32_t> workgroup_variables_;
+  std::uint32_t place_ = 0;                                          ///< the last mark's
+  bool is_marked_ = false;                                           ///< the instruction being printed has that place
   std::unordered_map<std::uint32_t, std::uint32_t> built_in_types_;  ///< of the variable of a built-in
   std::unordered_set<std::uint32_t> ending_functions_;               ///< a call to one may end the shader
   std::vector<std::pair<std::string, std::string>> payloads_;        ///< type and name of what is passed on

@@ -15,14 +15,18 @@ constexpr std::size_t first_value = 3;
 std::string Printer::atomic_call(const Instruction& i, const char* function, BaseType base,
                                  const std::string& arguments) {
   const std::uint32_t type_id = pointee(expression_type_id(i.operand(pointer)));
+  if (is_shared_pointer(i.operand(pointer)))
+    return fmt::format("k::atomic_{}<{}>(reinterpret_cast<std::byte*>({}){})", function, scalar_name(base),
+                       value(i.operand(pointer)), arguments);
   return fmt::format("k::atomic_{}<{}>({}{})", function, scalar_name(base),
                      guarded_pointer(type_id, address_of(i.operand(pointer))), arguments);
 }
 
 BaseType Printer::atomic_component(const Instruction& i) {
   const std::uint32_t pointer_id = i.operand(pointer);
-  if (!is_buffer_pointer(pointer_id) && type_of(pointer_id).storage != spv::StorageClassImage)
-    fail("an atomic operation outside of buffers and images");
+  if (!is_buffer_pointer(pointer_id) && type_of(pointer_id).storage != spv::StorageClassImage &&
+      !is_shared_pointer(pointer_id))
+    fail("an atomic operation outside of buffers, images and shared variables");
   return get<Type>(pointee(expression_type_id(pointer_id))).basetype;
 }
 

@@ -20,10 +20,12 @@ void Printer::print_call(const Instruction& i) {
     }
   }
   const std::string text = fmt::format("{}({})", to_name(function), arguments);
+  if (is_marked_) statement("own_lane.enter(", place_words(), ");");
   if (get<Type>(i.result_type()).basetype == SPIRType::Void)
     statement(text, ";");
   else
     define(i, text);
+  if (is_marked_) statement("own_lane.leave(", 2 * marks_.places.at(place_).loops.size() + 1, ");");
   print_call_ending(function);
 }
 

@@ -41,7 +41,7 @@ void Printer::print_extended_call(const Instruction& i, const ExtendedInstructio
 void Printer::print_split_into_pointer(const Instruction& i, const char* function) {
   const std::uint32_t number = i.operand(first_own_operand), pointer = i.operand(first_own_operand + 1);
   if (!is_buffer_pointer(pointer))
-    return define(i, fmt::format("k::{}({}, {})", function, value(number), value(pointer)));
+    return define(i, fmt::format("k::{}({}, {})", function, value(number), place_at(pointer)));
   const std::uint32_t type_id = pointee(expression_type_id(pointer));
   define(i, fmt::format("[&] {{ {} second{{}}; const auto first = k::{}({}, second); {}; return first; }}()",
                         type_name(type_id), function, value(number),

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "rhi/spirv/names.hpp"
-#include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/names/kernel_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {

@@ -31,6 +31,7 @@ Printer::PrintFunction Printer::by_hand(spv::Op op) {
       {spv::OpAtomicStore, &Printer::print_atomic_store},
       {spv::OpAtomicCompareExchange, &Printer::print_compare_exchange},
       {spv::OpMemoryBarrier, &Printer::print_memory_barrier},
+      {spv::OpControlBarrier, &Printer::print_control_barrier},
       {spv::OpReadClockKHR, &Printer::print_clock},
       // pointers
       {spv::OpPtrAccessChain, &Printer::print_pointer_access_chain},
@@ -89,7 +90,7 @@ Printer::PrintFunction Printer::by_hand(spv::Op op) {
       "an instruction is printed in one way");
   for (const Row& row : rows)
     if (row.op == op) return row.print;
-  return nullptr;
+  return is_subgroup_operation(op) ? &Printer::print_subgroup_operation : nullptr;
 }
 
 bool Printer::prints(spv::Op op) { return find_operation(op) != nullptr || by_hand(op) != nullptr; }
@@ -102,9 +103,14 @@ void Printer::emit_instruction(const spirv_cross::Instruction& instruction) { pr
 
 void Printer::print_instruction(const Instruction& i) {
   if (i.op() == loop_mark) return print_look();
-  if (const Operation* operation = find_operation(i.op())) return print_operation(i, *operation);
-  if (const PrintFunction print = by_hand(i.op())) return (this->*print)(i);
-  fail(rhi::instruction_name(i.op(), i.words()));
+  if (i.op() == place_mark || i.op() == round_mark || i.op() == loop_declaration) return print_mark(i);
+  if (const Operation* operation = find_operation(i.op()))
+    print_operation(i, *operation);
+  else if (const PrintFunction print = by_hand(i.op()))
+    (this->*print)(i);
+  else
+    fail(rhi::instruction_name(i.op(), i.words()));
+  is_marked_ = false;
 }
 
 void Printer::print_line(const Instruction& i) { emit_line_directive(i.operand(0), i.operand(1)); }

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/names/kernel_names.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {
@@ -21,12 +21,18 @@ void Printer::print_wide_run() {
       const k::Lanes<k::uint> index = k::Lanes<k::uint>(begin) + k::lane_indices();
       const k::wide_t<k::uvec3> local = k::local_invocations<{0}u, {1}u>(begin);
       Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, k::spread(id * k::uvec3({0}u, {1}u, {2}u)) + local, index{4}}}
-          .entry_point(index < k::Lanes<k::uint>({3}u));
+          .entry_point({5});
     }}
   }}
 }}
 )",
-      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], count, options_.watched ? ", dispatch.watch" : ""));
+      workgroup_size_[0], workgroup_size_[1], workgroup_size_[2], count, options_.watched ? ", dispatch.watch" : "",
+      entry_mask()));
+}
+
+std::string Printer::entry_mask() const {
+  const std::uint32_t count = invocation_count();
+  return count % options_.lanes == 0 ? "k::Mask(true)" : fmt::format("index < k::Lanes<k::uint>({}u)", count);
 }
 
 void Printer::print_run() {

@@ -15,7 +15,9 @@ std::uint32_t scalar_size(const SPIRType& type) { return type.width / 8; }
 
 }  // namespace
 
-bool Printer::is_buffer_pointer(std::uint32_t id) { return is_buffer(type_of(id).storage) && is_pointer(type_of(id)); }
+bool Printer::is_buffer_pointer(std::uint32_t id) {
+  return is_in_memory(type_of(id).storage) && is_pointer(type_of(id));
+}
 
 std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t member) const {
   if (!has_member_decoration(struct_type_id, member, spv::DecorationMatrixStride)) return 0;
@@ -40,6 +42,8 @@ Printer::Address Printer::address_of(std::uint32_t pointer_id) {
   if (variable->storage == spv::StorageClassShaderRecordBufferKHR)
     return known("shader_record", reflection_.shader_record_size);
   const std::string name = to_name(pointer_id);
+  if (variable->storage == spv::StorageClassWorkgroup && variable->parameter == nullptr)
+    return known(name.c_str(), workgroup_memory_);
   if (is_array(get<Type>(pointee(variable->basetype)))) return {.bytes = "", .resource = name};
   const bool is_bound = binding_of(pointer_id) != nullptr;
   return {.bytes = name,
@@ -117,10 +121,12 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
 void Printer::chain_in_variable(const Instruction& i) {
   const std::uint32_t base = i.operand(0);
   std::uint32_t type_id = pointee(expression_type_id(base));
-  std::string text = is_wide() ? to_expression(base) : value(base);
+  std::string text = place_at(base);
   std::size_t k = 1;
   if (type_of(base).storage == spv::StorageClassUniformConstant && is_array(get<Type>(type_id)))
     text = descriptor_element(i, k, type_id);
+  if (i.op() == spv::OpPtrAccessChain)
+    text = fmt::format("{}[std::ptrdiff_t({})]", value(base), value_with_sign(i.operand(k++), Sign::as_signed));
   const Type* type = &get<Type>(type_id);
   for (; k < i.operand_count(); ++k) {
     const auto* constant = maybe_get<SPIRConstant>(i.operand(k));
@@ -129,6 +135,9 @@ void Printer::chain_in_variable(const Instruction& i) {
                                : fmt::format("{}[{}]", text, index_inside(*type, value(i.operand(k))));
     type = &element_type(*type, index);
   }
+  if (is_shared_pointer(get<Type>(i.result_type()))) text = fmt::format("(&{})", text);
+  // Where an OpPhi takes it, what it depends on may have changed.
+  if (pointer_values_.contains(i.result())) return define(i, text);
   set<SPIRExpression>(i.result(), text, i.result_type(), true);
 }
 
@@ -232,7 +241,7 @@ void Printer::print_load(const Instruction& i) {
   else if (is_descriptor(type) && !is_array(type))
     define(i, descriptor_value(pointer));
   else
-    define(i, value(pointer));
+    define(i, place_at(pointer));
 }
 
 void Printer::print_store(const Instruction& i) { print_store_to(i.operand(0), value(i.operand(1))); }
@@ -242,14 +251,14 @@ void Printer::print_copy_memory(const Instruction& i) {
   if (is_buffer_pointer(from))
     print_store_to(to, guarded_load(pointee(expression_type_id(from)), address_of(from)));
   else
-    print_store_to(to, value(from));
+    print_store_to(to, place_at(from));
 }
 
 void Printer::print_store_to(std::uint32_t pointer_id, const std::string& text) {
   if (is_buffer_pointer(pointer_id))
     statement(guarded_store(pointee(expression_type_id(pointer_id)), address_of(pointer_id), text), ";");
   else
-    statement(value(pointer_id), " = ", text, ";");
+    statement(place_at(pointer_id), " = ", text, ";");
 }
 
 void Printer::print_array_length(const Instruction& i) {

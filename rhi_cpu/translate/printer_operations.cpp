@@ -14,6 +14,8 @@ using spirv_cross::SPIRType;
 std::string Printer::value(std::uint32_t id) {
   const auto address = addresses_.find(id);
   if (address != addresses_.end() && is_buffer_pointer(id)) check_pointer_value(id, address->second);
+  if (std::ranges::find(workgroup_variables_, id) != workgroup_variables_.end() && !has_workgroup_blocks_)
+    return fmt::format("(&{})", to_name(id));
   const auto* variable = is_wide() ? maybe_get<spirv_cross::SPIRVariable>(id) : nullptr;
   const bool is_phi = variable != nullptr && variable->phi_variable;
   return in_mode(id, is_phi ? fmt::format("v_{}", id) : to_expression(id));

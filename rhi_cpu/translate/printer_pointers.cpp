@@ -12,27 +12,38 @@ using spirv_cross::SPIRConstant;
 using spirv_cross::SPIRExpression;
 using spirv_cross::SPIRVariable;
 
+bool Printer::is_pointer_value(std::uint32_t id) { return is_buffer_pointer(id) || is_shared_pointer(id); }
+
 void Printer::set_up_pointers() {
   // Hoisted temporaries can be pointers.
   backend.native_pointers = true;
   // SPIRV-Cross would take the address of a variable that an OpPhi picks; a copy of it is a temporary.
   std::vector<std::uint32_t> blocks;
   ir.for_each_typed_id<SPIRBlock>([&](std::uint32_t id, SPIRBlock&) { blocks.push_back(id); });
+  const auto copied = [this](spirv_cross::ID& pointer, SPIRBlock& block) {
+    const auto* variable = maybe_get<SPIRVariable>(pointer);
+    if (variable == nullptr || variable->phi_variable || !is_pointer_value(pointer)) return;
+    const std::uint32_t type = variable->basetype, copy = ir.increase_bound_by(1);
+    spirv_cross::Instruction instruction;
+    instruction.op = spv::OpCopyObject;
+    instruction.offset = static_cast<std::uint32_t>(ir.spirv.size());
+    instruction.length = 3;
+    ir.spirv.insert(ir.spirv.end(), {type, copy, std::uint32_t(pointer)});
+    block.ops.push_back(instruction);
+    pointer = copy;
+  };
   for (const std::uint32_t id : blocks) {
     for (auto& phi : get<SPIRBlock>(id).phi_variables) {
-      const auto* variable = maybe_get<SPIRVariable>(phi.local_variable);
-      if (variable == nullptr || variable->phi_variable || !is_buffer_pointer(phi.local_variable)) continue;
-      const std::uint32_t type = variable->basetype, copy = ir.increase_bound_by(1);
-      spirv_cross::Instruction instruction;
-      instruction.op = spv::OpCopyObject;
-      instruction.offset = static_cast<std::uint32_t>(ir.spirv.size());
-      instruction.length = 3;
-      ir.spirv.insert(ir.spirv.end(), {type, copy, std::uint32_t(phi.local_variable)});
-      get<SPIRBlock>(phi.parent).ops.push_back(instruction);
-      phi.local_variable = copy;
+      spirv_cross::ID pointer = std::uint32_t(phi.local_variable);
+      copied(pointer, get<SPIRBlock>(phi.parent));
+      phi.local_variable = std::uint32_t(pointer);
+      pointer_values_.insert(phi.local_variable);
     }
-    for (const auto& phi : get<SPIRBlock>(id).phi_variables) pointer_values_.insert(phi.local_variable);
-    pointer_values_.insert(get<SPIRBlock>(id).return_value);
+    SPIRBlock& block = get<SPIRBlock>(id);
+    // A variable's name is what it holds.
+    if (maybe_get<SPIRVariable>(block.return_value) != nullptr && is_shared_pointer(block.return_value))
+      copied(block.return_value, block);
+    pointer_values_.insert(block.return_value);
   }
 }
 
@@ -63,6 +74,7 @@ void Printer::print_pointer_copy(const Instruction& i) {
 
 void Printer::print_pointer_access_chain(const Instruction& i) {
   const std::uint32_t pointer = i.operand(0), pointer_type = expression_type_id(pointer);
+  if (is_shared_pointer(pointer)) return chain_in_variable(i);
   const std::uint32_t stride = get_decoration(pointer_type, spv::DecorationArrayStride);
   if (!is_buffer_pointer(pointer) || stride == 0) fail("OpPtrAccessChain of a pointer without ArrayStride");
   Address address = address_of(pointer);
@@ -74,6 +86,10 @@ void Printer::print_pointer_access_chain(const Instruction& i) {
 
 void Printer::print_pointer_relation(const Instruction& i) {
   const std::uint32_t a = i.operand(0), b = i.operand(1);
+  if (is_shared_pointer(a)) {
+    const char* text = i.op() == spv::OpPtrDiff ? "-" : i.op() == spv::OpPtrEqual ? "==" : "!=";
+    return define(i, fmt::format("{}({} {} {})", type_name(i.result_type()), value(a), text, value(b)));
+  }
   if (!is_buffer_pointer(a)) fail(rhi::instruction_name(i.op(), i.words()) + " of pointers that point into no buffer");
   const std::string difference = fmt::format("({}) - ({})", pointer_value(a), pointer_value(b));
   if (i.op() != spv::OpPtrDiff) return define(i, difference + (i.op() == spv::OpPtrEqual ? " == 0" : " != 0"));

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/names/identifiers.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {
@@ -29,10 +29,11 @@ std::string Printer::type_name(const Type& type) {
 }
 
 std::string Printer::narrow_name(const Type& type) {
+  if (is_shared_pointer(type)) return narrow_name(get<Type>(type.parent_type)) + "*";
   if (is_pointer(type)) {
     const bool is_writable =
         type.storage != spv::StorageClassPushConstant && type.storage != spv::StorageClassShaderRecordBufferKHR;
-    if (!is_buffer(type.storage) || !is_writable) fail("a pointer as a value");
+    if (!is_in_memory(type.storage) || !is_writable) fail("a pointer as a value");
     return "std::byte*";
   }
   if (is_array(type))
@@ -151,7 +152,7 @@ std::string Printer::scalar_text(const SPIRConstant& constant, BaseType base, st
 
 std::string Printer::constant_text(const SPIRConstant& constant) {
   const Type& type = get<Type>(constant.constant_type);
-  if (is_pointer(type)) return "static_cast<std::byte*>(nullptr)";
+  if (is_pointer(type)) return fmt::format("static_cast<{}>(nullptr)", type_name(type));
   if (type.vecsize == 1 && type.columns == 1) return scalar_text(constant, type.basetype, 0, 0);
   std::string elements;
   for (std::uint32_t column = 0; column < type.columns; ++column)

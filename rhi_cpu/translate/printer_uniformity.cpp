@@ -24,7 +24,8 @@ bool is_atomic(spv::Op op) {
 /// Built-ins with one value for a workgroup, and so for a subgroup.
 bool is_common(std::uint32_t built_in) {
   return built_in == spv::BuiltInNumWorkgroups || built_in == spv::BuiltInWorkgroupId ||
-         built_in == spv::BuiltInWorkgroupSize;
+         built_in == spv::BuiltInWorkgroupSize || built_in == spv::BuiltInSubgroupSize ||
+         built_in == spv::BuiltInNumSubgroups || built_in == spv::BuiltInSubgroupId;
 }
 
 }  // namespace
@@ -233,7 +234,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
             }
           break;
         default:
-          varies |= is_atomic(i.op());
+          varies |= is_atomic(i.op()) || (is_subgroup_operation(i.op()) && !is_ballot_query(i.op()));
           for (const std::uint32_t word : i.words())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
                 variable != nullptr && get<Type>(variable->basetype).basetype == SPIRType::RayQuery)

@@ -124,8 +124,10 @@ bool Printer::is_wide_operation(const Instruction& i) {
       return !is_scalar || (extended->instruction != GLSLstd450Length && extended->instruction != GLSLstd450Normalize &&
                             extended->instruction != GLSLstd450Reflect && extended->instruction != GLSLstd450Distance);
     }
+    case spv::OpControlBarrier:
+      return true;
     default:
-      return false;
+      return is_subgroup_operation(i.op()) && !is_ballot_query(i.op());
   }
 }
 
@@ -142,7 +144,8 @@ void Printer::print_wide_instruction(const Instruction& i) {
     case spv::OpInBoundsAccessChain:
       return print_wide_chain(i);
     case spv::OpPtrAccessChain: {
-      const Restored mode(mode_, varies(i.result()) ? Mode::wide : Mode::common);
+      const Mode differs = is_buffer_pointer(i.operand(0)) ? Mode::wide : Mode::lane;
+      const Restored mode(mode_, varies(i.result()) ? differs : Mode::common);
       return print_pointer_access_chain(i);
     }
     case spv::OpLoad:
@@ -245,17 +248,17 @@ void Printer::print_wide_load(const Instruction& i) {
   }
   if (varies(pointer)) {
     return print_by_lane(i, [&] {
-      const std::string place = to_expression(pointer);
+      const std::string place = place_at(pointer);
       define(i, has_varying_contents(pointer) ? fmt::format("k::lane({}, lane)", place) : place);
     });
   }
   const bool is_wide_place = has_varying_contents(pointer);
   if (!is_wide_place && varies(i.result())) {
     const Restored mode(mode_, Mode::wide);
-    return define(i, fmt::format("k::spread({})", to_expression(pointer)));
+    return define(i, fmt::format("k::spread({})", place_at(pointer)));
   }
   const Restored mode(mode_, is_wide_place ? Mode::wide : Mode::common);
-  define(i, to_expression(pointer));
+  define(i, place_at(pointer));
 }
 
 void Printer::print_wide_store(const Instruction& i) {
@@ -267,14 +270,21 @@ void Printer::print_wide_store(const Instruction& i) {
     return print_store(i);
   }
   if (varies(pointer))
-    return print_by_lane(i,
-                         [&] { statement("k::set_lane(", to_expression(pointer), ", lane, ", value(stored), ");"); });
+    return print_by_lane(i, [&] {
+      if (has_varying_contents(pointer))
+        statement("k::set_lane(", place_at(pointer), ", lane, ", value(stored), ");");
+      else
+        statement(place_at(pointer), " = ", value(stored), ";");
+    });
   const bool is_wide_place = has_varying_contents(pointer);
+  // Memory that lanes share: the last one to write leaves its value.
+  if (!is_wide_place && varies(stored))
+    return print_by_lane(i, [&] { statement(place_at(pointer), " = ", value(stored), ";"); });
   const Restored mode(mode_, is_wide_place ? Mode::wide : Mode::common);
   if (is_wide_place)
-    statement("k::assign(", mask_, ", ", to_expression(pointer), ", ", value(stored), ");");
+    statement("k::assign(", mask_, ", ", place_at(pointer), ", ", value(stored), ");");
   else
-    statement(to_expression(pointer), " = ", value(stored), ";");
+    statement(place_at(pointer), " = ", value(stored), ";");
 }
 
 void Printer::print_wide_call(const Instruction& i) {
@@ -294,7 +304,7 @@ void Printer::print_wide_call(const Instruction& i) {
       arguments += mode_ == Mode::wide ? fmt::format("k::wide_t<std::byte*>({})", text) : text;
     } else if (is_pointer(type)) {
       if (varies(argument)) fail("a place that differs between invocations as argument, in the wide form");
-      arguments += to_expression(argument);
+      arguments += is_shared_pointer(type) ? value(argument) : to_expression(argument);
     } else {
       arguments += value(argument);
     }

@@ -67,6 +67,9 @@ void Printer::print_wide_prototype(std::uint32_t function_id) {
       const bool is_constant = is_pointer(type) && type.storage == spv::StorageClassPushConstant;
       parameters += (is_constant ? "const std::byte*" : type_name(type)) + " " + name;
       if (is_pointer(type)) addresses_[parameter.id] = {.bytes = name, .resource = "", .varies = varies(parameter.id)};
+    } else if (is_shared_pointer(type)) {
+      if (varies(parameter.id)) fail("a pointer into shared memory that differs between invocations, in the wide form");
+      parameters += type_name(type) + " " + name;
     } else if (type.storage == spv::StorageClassUniformConstant) {
       mode_ = Mode::common;
       parameters += descriptor_parameter(get<Type>(pointee(parameter.type))) + " " + name;
@@ -208,7 +211,10 @@ void Printer::print_declarations(const WidePrinting& printing, const std::vector
       const std::uint32_t id = phi.function_variable;
       if (escapes_.contains(id) || !declared_phis_.insert(id).second) continue;
       mode_ = varies(id) ? Mode::wide : Mode::common;
-      statement(type_name(get<SPIRVariable>(id).basetype), " v_", id, ";");
+      const Type& type = get<Type>(get<SPIRVariable>(id).basetype);
+      if (varies(id) && is_shared_pointer(type))
+        fail("a pointer into shared memory that differs between invocations, in the wide form");
+      statement(type_name(type), " v_", id, ";");
       mode_ = Mode::common;
     }
   }

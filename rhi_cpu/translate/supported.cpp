@@ -82,7 +82,34 @@ constexpr spv::Capability capabilities[] = {spv::CapabilityMatrix,
                                             spv::CapabilityRayQueryKHR,
                                             spv::CapabilityRayTracingKHR,
                                             spv::CapabilityRayCullMaskKHR,
-                                            spv::CapabilityRayTraversalPrimitiveCullingKHR};
+                                            spv::CapabilityRayTraversalPrimitiveCullingKHR,
+                                            spv::CapabilityWorkgroupMemoryExplicitLayoutKHR,
+                                            spv::CapabilityWorkgroupMemoryExplicitLayout8BitAccessKHR,
+                                            spv::CapabilityWorkgroupMemoryExplicitLayout16BitAccessKHR,
+                                            spv::CapabilityGroupNonUniform,
+                                            spv::CapabilityGroupNonUniformVote,
+                                            spv::CapabilityGroupNonUniformArithmetic,
+                                            spv::CapabilityGroupNonUniformBallot,
+                                            spv::CapabilityGroupNonUniformShuffle,
+                                            spv::CapabilityGroupNonUniformShuffleRelative,
+                                            spv::CapabilityGroupNonUniformClustered,
+                                            spv::CapabilityGroupNonUniformQuad,
+                                            spv::CapabilityGroupNonUniformRotateKHR,
+                                            spv::CapabilitySubgroupBallotKHR,
+                                            spv::CapabilitySubgroupVoteKHR};
+
+/// Those of them that no stage of a ray tracing pipeline has.
+constexpr spv::Capability compute_capabilities[] = {spv::CapabilityGroupNonUniform,
+                                                    spv::CapabilityGroupNonUniformVote,
+                                                    spv::CapabilityGroupNonUniformArithmetic,
+                                                    spv::CapabilityGroupNonUniformBallot,
+                                                    spv::CapabilityGroupNonUniformShuffle,
+                                                    spv::CapabilityGroupNonUniformShuffleRelative,
+                                                    spv::CapabilityGroupNonUniformClustered,
+                                                    spv::CapabilityGroupNonUniformQuad,
+                                                    spv::CapabilityGroupNonUniformRotateKHR,
+                                                    spv::CapabilitySubgroupBallotKHR,
+                                                    spv::CapabilitySubgroupVoteKHR};
 
 constexpr spv::ExecutionModel execution_models[] = {spv::ExecutionModelGLCompute,  spv::ExecutionModelRayGenerationKHR,
                                                     spv::ExecutionModelAnyHitKHR,  spv::ExecutionModelClosestHitKHR,
@@ -93,34 +120,48 @@ constexpr spv::ExecutionMode execution_modes[] = {spv::ExecutionModeLocalSize, s
                                                   spv::ExecutionModeSignedZeroInfNanPreserve,
                                                   spv::ExecutionModeDenormPreserve, spv::ExecutionModeRoundingModeRTE};
 
-constexpr spv::StorageClass storage_classes[] = {spv::StorageClassUniformConstant,
-                                                 spv::StorageClassInput,
-                                                 spv::StorageClassUniform,
-                                                 spv::StorageClassPrivate,
-                                                 spv::StorageClassFunction,
-                                                 spv::StorageClassPushConstant,
-                                                 spv::StorageClassStorageBuffer,
-                                                 spv::StorageClassRayPayloadKHR,
-                                                 spv::StorageClassIncomingRayPayloadKHR,
-                                                 spv::StorageClassCallableDataKHR,
-                                                 spv::StorageClassIncomingCallableDataKHR,
-                                                 spv::StorageClassHitAttributeKHR,
-                                                 spv::StorageClassShaderRecordBufferKHR,
-                                                 spv::StorageClassImage,
-                                                 spv::StorageClassPhysicalStorageBuffer};
+constexpr spv::StorageClass storage_classes[] = {
+    spv::StorageClassUniformConstant, spv::StorageClassInput,
+    spv::StorageClassUniform,         spv::StorageClassPrivate,
+    spv::StorageClassWorkgroup,       spv::StorageClassFunction,
+    spv::StorageClassPushConstant,    spv::StorageClassStorageBuffer,
+    spv::StorageClassRayPayloadKHR,   spv::StorageClassIncomingRayPayloadKHR,
+    spv::StorageClassCallableDataKHR, spv::StorageClassIncomingCallableDataKHR,
+    spv::StorageClassHitAttributeKHR, spv::StorageClassShaderRecordBufferKHR,
+    spv::StorageClassImage,           spv::StorageClassPhysicalStorageBuffer};
 
-constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,       spv::BuiltInWorkgroupSize,
-                                      spv::BuiltInWorkgroupId,         spv::BuiltInLocalInvocationId,
-                                      spv::BuiltInGlobalInvocationId,  spv::BuiltInLocalInvocationIndex,
-                                      spv::BuiltInLaunchIdKHR,         spv::BuiltInLaunchSizeKHR,
-                                      spv::BuiltInInstanceId,          spv::BuiltInInstanceCustomIndexKHR,
-                                      spv::BuiltInRayGeometryIndexKHR, spv::BuiltInPrimitiveId,
-                                      spv::BuiltInWorldRayOriginKHR,   spv::BuiltInWorldRayDirectionKHR,
-                                      spv::BuiltInObjectRayOriginKHR,  spv::BuiltInObjectRayDirectionKHR,
-                                      spv::BuiltInRayTminKHR,          spv::BuiltInRayTmaxKHR,
-                                      spv::BuiltInHitKindKHR,          spv::BuiltInObjectToWorldKHR,
-                                      spv::BuiltInWorldToObjectKHR,    spv::BuiltInIncomingRayFlagsKHR,
-                                      spv::BuiltInCullMaskKHR};
+constexpr spv::BuiltIn built_ins[] = {spv::BuiltInNumWorkgroups,
+                                      spv::BuiltInWorkgroupSize,
+                                      spv::BuiltInWorkgroupId,
+                                      spv::BuiltInLocalInvocationId,
+                                      spv::BuiltInGlobalInvocationId,
+                                      spv::BuiltInLocalInvocationIndex,
+                                      spv::BuiltInLaunchIdKHR,
+                                      spv::BuiltInLaunchSizeKHR,
+                                      spv::BuiltInInstanceId,
+                                      spv::BuiltInInstanceCustomIndexKHR,
+                                      spv::BuiltInRayGeometryIndexKHR,
+                                      spv::BuiltInPrimitiveId,
+                                      spv::BuiltInWorldRayOriginKHR,
+                                      spv::BuiltInWorldRayDirectionKHR,
+                                      spv::BuiltInObjectRayOriginKHR,
+                                      spv::BuiltInObjectRayDirectionKHR,
+                                      spv::BuiltInRayTminKHR,
+                                      spv::BuiltInRayTmaxKHR,
+                                      spv::BuiltInHitKindKHR,
+                                      spv::BuiltInObjectToWorldKHR,
+                                      spv::BuiltInWorldToObjectKHR,
+                                      spv::BuiltInIncomingRayFlagsKHR,
+                                      spv::BuiltInCullMaskKHR,
+                                      spv::BuiltInSubgroupSize,
+                                      spv::BuiltInNumSubgroups,
+                                      spv::BuiltInSubgroupId,
+                                      spv::BuiltInSubgroupLocalInvocationId,
+                                      spv::BuiltInSubgroupEqMask,
+                                      spv::BuiltInSubgroupGeMask,
+                                      spv::BuiltInSubgroupGtMask,
+                                      spv::BuiltInSubgroupLeMask,
+                                      spv::BuiltInSubgroupLtMask};
 
 constexpr spv::Dim dimensions[] = {spv::Dim1D, spv::Dim2D, spv::Dim3D, spv::DimCube, spv::DimBuffer};
 
@@ -181,6 +222,7 @@ class Checker {
     switch (op) {
       case spv::OpCapability:
         if (!contains(capabilities, word(1))) fail("capability " + rhi::capability_name(word(1)));
+        if (contains(compute_capabilities, word(1))) of_compute_.push_back(word(1));
         break;
       case spv::OpExtInstImport:
         import(word(1), literal_string(i.subspan(std::min<std::size_t>(2, i.size()))));
@@ -188,6 +230,10 @@ class Checker {
       case spv::OpEntryPoint:
         model_ = word(1);
         if (!contains(execution_models, model_)) fail("execution model " + rhi::execution_model_name(model_));
+        if (model_ != spv::ExecutionModelGLCompute)
+          for (const std::uint32_t capability : of_compute_)
+            fail(fmt::format("capability {} in a {} shader", rhi::capability_name(capability),
+                             rhi::execution_model_name(model_)));
         break;
       case spv::OpExecutionMode:
       case spv::OpExecutionModeId:
@@ -255,6 +301,7 @@ class Checker {
   std::vector<std::string> unsupported_;
   std::map<std::uint32_t, std::string> sets_;
   std::uint32_t model_ = spv::ExecutionModelGLCompute;
+  std::vector<std::uint32_t> of_compute_;  ///< declared capabilities of compute_capabilities
 };
 
 }  // namespace
@@ -292,6 +339,22 @@ std::vector<std::string> unsupported_features(std::span<const std::uint32_t> spi
     i += length;
   }
   return checker.unsupported();
+}
+
+bool declares_subgroups(std::span<const std::uint32_t> spirv) {
+  bool found = false;
+  rhi::for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    found |= rhi::operation_of(i) == spv::OpCapability && contains(compute_capabilities, i[1]);
+  });
+  return found;
+}
+
+bool declares_ray_queries(std::span<const std::uint32_t> spirv) {
+  bool found = false;
+  rhi::for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    found |= rhi::operation_of(i) == spv::OpCapability && i[1] == spv::CapabilityRayQueryKHR;
+  });
+  return found;
 }
 
 void check_supported(std::span<const std::uint32_t> spirv, const std::string& label) {

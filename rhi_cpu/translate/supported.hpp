@@ -30,6 +30,11 @@ bool is_supported(spv::Op op);
 /// Nothing unknown gets past it. Throws rhi::Error(invalid_argument), in the name of `label`, for truncated words.
 std::vector<std::string> unsupported_features(std::span<const std::uint32_t> spirv, const std::string& label);
 
+/// Whether the module may have something that depends on the size of a subgroup.
+bool declares_subgroups(std::span<const std::uint32_t> spirv);
+
+bool declares_ray_queries(std::span<const std::uint32_t> spirv);
+
 /// Throws rhi::Error(unsupported) with all that unsupported_features() finds.
 void check_supported(std::span<const std::uint32_t> spirv, const std::string& label);
 

@@ -5,6 +5,7 @@
 
 #include "rhi/error.hpp"
 #include "rhi/shader_reflection.hpp"
+#include "rhi_cpu/translate/groups/places.hpp"
 #include "rhi_cpu/translate/prepare.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
@@ -16,7 +17,10 @@ Translation translate(std::span<const std::uint32_t> spirv, const std::string& l
   if (options.lanes != 0) words = with_values_for_variables(words, label);
   if (options.watched) words = with_marked_loops(words);
   try {
-    return {Printer(words, label, reflection, options).compile()};
+    // In the wide form the masks say who meets.
+    const bool is_marked = options.lanes == 0 && has_meetings(words);
+    const MarkedModule module = is_marked ? with_marked_places(words) : MarkedModule{.words = words};
+    return {Printer(module, label, reflection, options).compile()};
   } catch (const rhi::Error&) {
     throw;
   } catch (const std::exception& error) {

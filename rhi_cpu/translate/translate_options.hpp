@@ -5,6 +5,7 @@
 #include <string>
 
 #include "rhi/pipeline.hpp"
+#include "rhi_cpu/kernel/group_limits.hpp"
 
 namespace tandem::cpu {
 
@@ -18,6 +19,8 @@ struct TranslateOptions {
   bool robust = false;
   /// Loops look at kernel::Dispatch::watch.
   bool watched = false;
+  /// gl_SubgroupSize: 1, 2, 4, 8, 16 or 32.
+  std::uint32_t subgroup_size = kernel::default_subgroup_size;
   /// Invocations that the kernel runs at once: 4, 8, 16 or 32, the wide form; 0: the scalar form, one after the other.
   /// Compute shaders only.
   std::uint32_t lanes = 0;

@@ -60,13 +60,17 @@ TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
       "layout(binding = 0) uniform sampler2DMS s; layout(binding = 1) buffer B { vec4 b; };\n"
       "void main() { b = texelFetch(s, ivec2(0), 1); }",
       "OpTypeImage with several samples is not supported");
-  check_glsl("shared int s[4]; void main() { s[gl_LocalInvocationIndex] = 1; }",
-             "storage class Workgroup is not supported");
-  check_glsl("void main() { barrier(); }", "OpControlBarrier is not supported");
+  check_glsl("shared int s[20000]; void main() { s[gl_LocalInvocationIndex] = 1; }",
+             "its shared variables have 80000 bytes, where a workgroup on the CPU device has 65536");
   check_glsl(
-      "#extension GL_KHR_shader_subgroup_basic : require\nlayout(binding = 1) buffer B { uint b; };\n"
-      "void main() { b = gl_SubgroupSize; }",
-      "capability GroupNonUniform and built-in SubgroupSize are not supported");
+      "#extension GL_NV_shader_subgroup_partitioned : require\nlayout(binding = 1) buffer B { uint b; };\n"
+      "void main() { b = subgroupPartitionNV(b).x; }",
+      "capability GroupNonUniformPartitionedNV and OpGroupNonUniformPartitionNV are not supported");
+  check_refused(tandem::test::traced_spirv("#extension GL_KHR_shader_subgroup_basic : require\n"
+                                           "layout(location = 0) rayPayloadInEXT uint p;\n"
+                                           "void main() { p = gl_SubgroupSize; }",
+                                           tandem::rhi::ShaderStage::miss),
+                ErrorCode::unsupported, "capability GroupNonUniform in a MissKHR shader is not supported");
 }
 
 TEST_CASE("what has no level of detail outside of a fragment shader is named") {

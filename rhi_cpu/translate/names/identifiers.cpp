@@ -1,4 +1,4 @@
-#include "rhi_cpu/translate/identifiers.hpp"
+#include "rhi_cpu/translate/names/identifiers.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -114,11 +114,12 @@ constexpr std::string_view taken[] = {"alignas",
                                       "xor_eq"};
 
 /// What the printer itself begins names with, followed by more.
-constexpr std::string_view own_prefixes[] = {"block_", "built_in_", "constant_", "function_", "hit_attributes_",
-                                             "load_",  "payload_",  "private_",  "store_",    "struct_"};
-constexpr std::string_view own_names[] = {"binding_slots", "call",        "ended",          "entry_point",
-                                          "kernel_info",   "Invocation",  "push_constants", "resources",
-                                          "run",           "shader_call", "shader_record"};
+constexpr std::string_view own_prefixes[] = {"block_",          "built_in_", "constant_", "function_",
+                                             "hit_attributes_", "load_",     "payload_",  "private_",
+                                             "rounds_",         "shared_",   "store_",    "struct_"};
+constexpr std::string_view own_names[] = {
+    "binding_slots", "call",           "ended",     "entry_point", "kernel_info", "Invocation",   "own_group",
+    "own_lane",      "push_constants", "resources", "run",         "shader_call", "shader_record"};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_upper(char c) { return c >= 'A' && c <= 'Z'; }

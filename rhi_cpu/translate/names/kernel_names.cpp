@@ -1,4 +1,4 @@
-#include "rhi_cpu/translate/kernel_names.hpp"
+#include "rhi_cpu/translate/names/kernel_names.hpp"
 
 #include <cstddef>
 #include <iterator>
