@@ -95,6 +95,7 @@ void FibreSet::live(std::uint32_t index) {
 
 void FibreSet::switch_to(kernel::Fibres& fibres, std::uint32_t index) {
   auto& set = static_cast<FibreSet&>(fibres);
+  if (index == set.running_) return;
   Fibre& to = set.prepared(index);
   Fibre& from = *set.fibres_[std::exchange(set.running_, index)];
   set.go_on(to, from);

@@ -10,6 +10,7 @@
 #endif
 #endif
 #ifdef TANDEM_SANITIZED_SWITCH
+#include <sanitizer/asan_interface.h>
 #include <sanitizer/common_interface_defs.h>
 #endif
 
@@ -41,6 +42,13 @@ inline void begin_last_switch([[maybe_unused]] const StackBounds& to) {
 inline void end_switch([[maybe_unused]] void* own, [[maybe_unused]] StackBounds& from) {
 #ifdef TANDEM_SANITIZED_SWITCH
   __sanitizer_finish_switch_fiber(own, &from.bottom, &from.size);
+#endif
+}
+
+/// Of memory that has been a stack before, on which frames were left.
+inline void forget_frames([[maybe_unused]] const void* bottom, [[maybe_unused]] std::size_t size) {
+#ifdef TANDEM_SANITIZED_SWITCH
+  __asan_unpoison_memory_region(bottom, size);
 #endif
 }
 

@@ -5,6 +5,8 @@
 
 #include <new>
 
+#include "rhi_cpu/launch/sanitized_switch.hpp"
+
 namespace tandem::cpu {
 namespace {
 
@@ -27,6 +29,7 @@ StackMemory::StackMemory(std::size_t size, std::uint32_t number) {
     ::munmap(mapping_, mapped_);
     throw std::bad_alloc();
   }
+  forget_frames(mapping_ + page, size_);
   top_ = mapping_ + mapped_ - shift;
   size_ -= shift;
 }

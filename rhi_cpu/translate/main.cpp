@@ -78,6 +78,7 @@ int main(int argc, char** argv) {
   app.add_flag("--robust", robust, "keep accesses inside of what is bound, as devices with robust access do");
   std::uint32_t subgroup_size = tandem::cpu::TranslateOptions().subgroup_size;
   app.add_option("--subgroup-size", subgroup_size, "invocations of a subgroup, a power of two up to 32")
+      ->check(CLI::IsMember(std::vector<std::uint32_t>{1, 2, 4, 8, 16, 32}))
       ->capture_default_str();
   app.add_flag("--watched", watched, "let loops look at a watch, as devices with a time limit do");
   std::uint32_t lanes = 0;

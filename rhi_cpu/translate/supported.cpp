@@ -232,8 +232,7 @@ class Checker {
         if (!contains(execution_models, model_)) fail("execution model " + rhi::execution_model_name(model_));
         if (model_ != spv::ExecutionModelGLCompute)
           for (const std::uint32_t capability : of_compute_)
-            fail(fmt::format("capability {} in a {} shader", rhi::capability_name(capability),
-                             rhi::execution_model_name(model_)));
+            fail(fmt::format("capability {} in a ray tracing stage", rhi::capability_name(capability)));
         break;
       case spv::OpExecutionMode:
       case spv::OpExecutionModeId:

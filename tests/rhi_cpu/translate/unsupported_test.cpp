@@ -70,7 +70,7 @@ TEST_CASE("GLSL features are refused by what they are in SPIR-V") {
                                            "layout(location = 0) rayPayloadInEXT uint p;\n"
                                            "void main() { p = gl_SubgroupSize; }",
                                            tandem::rhi::ShaderStage::miss),
-                ErrorCode::unsupported, "capability GroupNonUniform in a MissKHR shader is not supported");
+                ErrorCode::unsupported, "capability GroupNonUniform in a ray tracing stage is not supported");
 }
 
 TEST_CASE("what has no level of detail outside of a fragment shader is named") {
