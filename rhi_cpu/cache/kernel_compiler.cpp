@@ -74,6 +74,11 @@ std::string first_error_line(const std::string& log) {
   return first;
 }
 
+/// What the sources of kernels include first.
+std::string first_header(std::uint32_t lanes) {
+  return lanes == 0 ? "rhi_cpu/kernel/kernel.hpp" : "rhi_cpu/kernel/wide/wide.hpp";
+}
+
 void write_kernel_headers(const fs::path& folder) {
   for (const KernelHeader& header : kernel_headers()) {
     const fs::path path = folder / header.path;
@@ -132,14 +137,17 @@ bool precompiles_headers(const KernelCompiler& compiler) {
   return compiler.version.find("Free Software Foundation") != std::string::npos;
 }
 
-bool precompile_kernel_headers(const KernelCompiler& compiler, const fs::path& folder) {
+std::string precompiled_kernel_header(std::uint32_t lanes) { return first_header(lanes) + ".gch"; }
+
+bool precompile_kernel_headers(const KernelCompiler& compiler, const fs::path& folder, std::uint32_t lanes) {
   write_kernel_headers(folder);
   std::vector<std::string> command = {compiler.path.string()};
   for (std::string& option : options()) command.push_back(std::move(option));
   for (const std::string& argument :
        {std::string("-I"), folder.string(), std::string("-x"), std::string("c++-header"), std::string("-o"),
-        (folder / precompiled_kernel_header).string(), (folder / "rhi_cpu/kernel/kernel.hpp").string()})
+        (folder / precompiled_kernel_header(lanes)).string(), (folder / first_header(lanes)).string()})
     command.push_back(argument);
+  if (lanes != 0) command.push_back(fmt::format("-DTANDEM_LANES={}", lanes));
   const std::optional<ProcessResult> result = run_process(command);
   return result && result->exit_code == 0;
 }

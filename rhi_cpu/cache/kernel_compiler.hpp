@@ -40,11 +40,13 @@ std::string compile_kernel(const KernelCompiler& compiler, const std::filesystem
 /// Whether the compiler takes a precompiled header that lies beside the header itself, as g++ does.
 bool precompiles_headers(const KernelCompiler& compiler);
 
-/// Writes the kernel headers below `folder` and precompiles kernel.hpp for compile_kernel(): g++ reads them three times
-/// as long as it compiles a small kernel. @return whether it could
-bool precompile_kernel_headers(const KernelCompiler& compiler, const std::filesystem::path& folder);
+/// Writes the kernel headers below `folder` and precompiles the one that compile_kernel()'s sources begin with: g++
+/// reads them three times as long as it compiles a small kernel. @return whether it could
+/// @param lanes TranslateOptions::lanes of the kernels
+bool precompile_kernel_headers(const KernelCompiler& compiler, const std::filesystem::path& folder,
+                               std::uint32_t lanes = 0);
 
 /// Where precompile_kernel_headers() puts it, below its folder.
-inline constexpr const char* precompiled_kernel_header = "rhi_cpu/kernel/kernel.hpp.gch";
+std::string precompiled_kernel_header(std::uint32_t lanes = 0);
 
 }  // namespace tandem::cpu

@@ -128,7 +128,7 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;
   // The translator gives line numbers when the SPIR-V has them.
   const bool has_lines = translation.source.find("\n#line ") != std::string::npos;
-  const std::filesystem::path precompiled = headers(label);
+  const std::filesystem::path precompiled = headers(how.lanes, label);
   std::string problem = compile_kernel(compiler(label), folder.path(), precompiled, has_lines);
   if (!problem.empty() && !precompiled.empty()) {
     // They may be damaged.
@@ -152,16 +152,17 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
   return library;
 }
 
-std::filesystem::path KernelStore::headers(const std::string& label) {
+std::filesystem::path KernelStore::headers(std::uint32_t lanes, const std::string& label) {
   const KernelCompiler& own_compiler = compiler(label);
   if (!precompiles_headers(own_compiler)) return {};
-  const ContentHash key = key_of({}, {}, {}, own_compiler);
+  const ContentHash key = key_of({}, {}, {.lanes = lanes}, own_compiler);
   KernelCache& store = cache();
   const std::lock_guard lock(headers_mutex_);
-  if (std::filesystem::path found = store.find_headers(key, precompiled_kernel_header); !found.empty()) return found;
+  if (std::filesystem::path found = store.find_headers(key, precompiled_kernel_header(lanes)); !found.empty())
+    return found;
   if (!store.has_libraries()) return {};
   TemporaryFolder folder = store.make_work_folder(label);
-  if (!precompile_kernel_headers(own_compiler, folder.path())) return {};
+  if (!precompile_kernel_headers(own_compiler, folder.path(), lanes)) return {};
   return store.add_headers(key, std::move(folder));
 }
 

@@ -60,9 +60,9 @@ class KernelStore {
 
   const KernelCompiler& compiler(const std::string& label);
   KernelCache& cache();
-  /// The folder of precompiled headers; "" where kernels are compiled without. Made for the second kernel of a cache:
-  /// it takes twice as long as one kernel, and saves two thirds of each that follows.
-  std::filesystem::path headers(const std::string& label);
+  /// The folder of precompiled headers for kernels of a form; "" where kernels are compiled without. Made for the
+  /// second kernel of a cache: it takes twice as long as one kernel, and saves two thirds of each that follows.
+  std::filesystem::path headers(std::uint32_t lanes, const std::string& label);
   std::shared_ptr<Entry> entry(const ContentHash& key);
   KernelLibraryHandle compile(const rhi::ShaderModule& shader, std::span<const rhi::SpecializationValue> values,
                               const KernelOptions& options, const ContentHash& key, const std::string& label);

@@ -95,7 +95,7 @@ void Printer::set_up_names() {
   if (is_wide()) {
     const auto rename = [this](std::uint32_t id) {
       std::string& alias = ir.meta[id].decoration.alias;
-      alias = (alias.starts_with('_') ? "own" : "own_") + alias;
+      alias = (alias.starts_with('_') ? "the" : "the_") + alias;
     };
     ir.for_each_typed_id<SPIRFunction>([&](std::uint32_t, SPIRFunction& function) {
       for (const std::uint32_t id : function.local_variables) rename(id);
@@ -233,11 +233,8 @@ void Printer::print_module() {
   const std::string group = needs_group() ? printed([this] { print_group(); }) : "";
   const std::string members = printed([this] { print_members(); });
   buffer.reset();
-  statement("#include \"rhi_cpu/kernel/kernel.hpp\"");
-  if (is_wide()) {
-    statement("#define TANDEM_LANES ", options_.lanes);
-    statement("#include \"rhi_cpu/kernel/wide/wide.hpp\"");
-  }
+  if (is_wide()) statement("#define TANDEM_LANES ", options_.lanes);
+  statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/wide.hpp" : "kernel.hpp", "\"");
   if (has_halves()) statement("#include \"rhi_cpu/kernel/half.hpp\"");
   if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "rhi_cpu/translate/printer.hpp"
@@ -142,7 +144,9 @@ void Printer::chain_in_variable(const Instruction& i) {
 }
 
 std::string Printer::descriptor_element(const Instruction& i, std::size_t& k, std::uint32_t& type_id) {
-  // An array of arrays is flattened in the order in which its elements are bound.
+  // An array of arrays is flattened in the order in which its elements are bound. In lanes, print_wide_chain has seen
+  // to it that all have the same index.
+  const Mode before = std::exchange(mode_, mode_ == Mode::wide ? Mode::common : mode_);
   std::string index;
   for (; is_array(get<Type>(type_id)); ++k, type_id = get<Type>(type_id).parent_type) {
     if (k == i.operand_count()) fail("a pointer to an array of descriptors");
@@ -150,6 +154,7 @@ std::string Printer::descriptor_element(const Instruction& i, std::size_t& k, st
     index = index.empty() ? fmt::format("std::size_t({})", next)
                           : fmt::format("({} * {} + {})", index, array_length(get<Type>(type_id)), next);
   }
+  mode_ = before;
   const std::string array = to_name(i.operand(0));
   if (!options_.robust) return fmt::format("{}[{}]", array, index);
   return fmt::format("k::element({}, {}, {})", array, descriptor_count(i.operand(0)), index);

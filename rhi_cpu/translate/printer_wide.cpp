@@ -202,7 +202,15 @@ void Printer::print_wide_chain(const Instruction& i) {
     const Restored mode(mode_, Mode::lane);
     return print_access_chain(i);
   }
-  const Restored mode(mode_, Mode::wide);
+  // Where the array of buffers is indexed.
+  bool is_one_buffer = true;
+  if (address_of(i.operand(0)).bytes.empty()) {
+    std::size_t k = 1;
+    for (const Type* type = &get<Type>(pointee(expression_type_id(i.operand(0))));
+         is_array(*type) && k < i.operand_count(); type = &get<Type>(type->parent_type))
+      is_one_buffer &= !varies(i.operand(k++));
+  }
+  const Restored mode(mode_, is_one_buffer ? Mode::wide : Mode::lane);
   print_access_chain(i);
 }
 

@@ -118,7 +118,10 @@ constexpr spv::ExecutionModel execution_models[] = {spv::ExecutionModelGLCompute
 
 constexpr spv::ExecutionMode execution_modes[] = {spv::ExecutionModeLocalSize, spv::ExecutionModeLocalSizeId,
                                                   spv::ExecutionModeSignedZeroInfNanPreserve,
-                                                  spv::ExecutionModeDenormPreserve, spv::ExecutionModeRoundingModeRTE};
+                                                  spv::ExecutionModeDenormPreserve, spv::ExecutionModeRoundingModeRTE,
+                                                  spv::ExecutionModeSubgroupUniformControlFlowKHR,
+                                                  // MaximallyReconvergesKHR, which Debian 12's header does not know.
+                                                  static_cast<spv::ExecutionMode>(6023)};
 
 constexpr spv::StorageClass storage_classes[] = {
     spv::StorageClassUniformConstant, spv::StorageClassInput,

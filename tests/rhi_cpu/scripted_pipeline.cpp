@@ -111,8 +111,12 @@ bool visit(const kernel::TopLevel& top_level, const Ray& ray, const kernel::Cand
   return found;
 }
 
-constexpr kernel::TraceFunctions scripted_functions = {
-    .closest = &closest, .occluded = &occluded, .next_hits = nullptr, .visit = &visit};
+constexpr kernel::TraceFunctions scripted_functions = {.closest = &closest,
+                                                       .occluded = &occluded,
+                                                       .next_hits = nullptr,
+                                                       .visit = &visit,
+                                                       .closest_of_packet = nullptr,
+                                                       .occluded_of_packet = nullptr};
 
 }  // namespace
 

@@ -1,9 +1,5 @@
 #pragma once
 
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
-
 #include "rhi_cpu/kernel/bits.hpp"
 #include "rhi_cpu/kernel/math.hpp"
 #include "rhi_cpu/kernel/matrices.hpp"
@@ -14,12 +10,13 @@
 namespace tandem::kernel {
 
 inline std::uint32_t bits_of(Mask mask) {
+  // Named here, because <immintrin.h> takes the compiler longer than all of a small kernel.
 #if defined(__AVX512DQ__) && TANDEM_LANES == 16
-  return _mm512_movepi32_mask(reinterpret_cast<__m512i>(mask.of_lane));
+  return __builtin_ia32_cvtd2mask512(mask.of_lane);
 #elif defined(__AVX__) && TANDEM_LANES == 8
-  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<__m256>(mask.of_lane)));
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps256(reinterpret_cast<Lanes<float>::Register>(mask.of_lane)));
 #elif defined(__SSE2__) && TANDEM_LANES == 4
-  return static_cast<std::uint32_t>(_mm_movemask_ps(reinterpret_cast<__m128>(mask.of_lane)));
+  return static_cast<std::uint32_t>(__builtin_ia32_movmskps(reinterpret_cast<Lanes<float>::Register>(mask.of_lane)));
 #else
   std::uint32_t bits = 0;
   for (int i = 0; i < lane_count; ++i) bits |= static_cast<std::uint32_t>(mask[i]) << i;

@@ -39,7 +39,7 @@ std::uint32_t next(const kernel::TopLevel& scene, const kernel::Ray& ray, const 
   return previous == nullptr && closest(scene, ray, hits[0]) ? 1 : 0;
 }
 
-constexpr kernel::TraceFunctions functions = {closest, occluded, next, nullptr};
+constexpr kernel::TraceFunctions functions = {closest, occluded, next, nullptr, nullptr, nullptr};
 constexpr kernel::Instance instances[2] = {
     {}, {{{1, 0, 0, 10}, {0, 1, 0, 20}, {0, 0, 1, 30}}, {{1, 0, 0, -10}, {0, 1, 0, -20}, {0, 0, 1, -30}}, 42, 77}};
 
@@ -120,7 +120,7 @@ std::uint32_t next_candidates(const kernel::TopLevel&, const kernel::Ray&, const
 }
 
 TEST_CASE("candidates are asked for, confirmed and generated, with structures from an array under any index") {
-  constexpr kernel::TraceFunctions with_candidates = {closest, occluded, next_candidates, nullptr};
+  constexpr kernel::TraceFunctions with_candidates = {closest, occluded, next_candidates, nullptr, nullptr, nullptr};
   const kernel::TopLevel scenes[2] = {{&functions, instances, 2, true, false},
                                       {&with_candidates, instances, 2, false, true}};
   const Kernel kernel(R"(
