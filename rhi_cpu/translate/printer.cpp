@@ -280,50 +280,6 @@ std::uint32_t Printer::first_resource_of(std::uint32_t variable) const {
   return first;
 }
 
-void Printer::print_members() {
-  statement("struct Invocation {");
-  if (is_traced()) {
-    print_traced_members();
-  } else {
-    statement("const k::Resource* resources;");
-    statement("const std::byte* push_constants;");
-    const bool wide = is_wide();
-    for (const char* built_in : {"NumWorkgroups", "WorkgroupId"}) statement("k::uvec3 built_in_", built_in, ";");
-    for (const char* built_in : {"LocalInvocationId", "GlobalInvocationId"})
-      statement(wide ? "k::wide_t<k::uvec3>" : "k::uvec3", " built_in_", built_in, ";");
-    statement(wide ? "k::Lanes<k::uint>" : "k::uint", " built_in_LocalInvocationIndex;");
-    if (options_.watched) statement("const k::Watch* watch;");
-    if (needs_group()) statement("Workgroup* own_group;");
-    if (needs_lanes()) statement("k::Lane", lane_types(), " own_lane;");
-  }
-  if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
-  ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
-    if (variable.storage == spv::StorageClassPrivate) {
-      const std::uint32_t type = pointee(variable.basetype);
-      std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
-      mode_ = is_wide() ? Mode::wide : Mode::common;
-      if (variable.initializer) initial = " = " + value(variable.initializer);
-      statement(type_name(type), " ", to_name(id), initial, ";");
-      mode_ = Mode::common;
-      return;
-    }
-    if (!has_decoration(id, spv::DecorationBinding) || binding_of(id) == nullptr) return;
-    const Type& type = get<Type>(pointee(variable.basetype));
-    const std::string first = fmt::format("resources[{}]", first_resource_of(id));
-    if (is_array(type) && binding_of(id)->count == 0)
-      statement("const k::Resource* ", to_name(id), " = reinterpret_cast<const k::Resource*>(", first, ".data);");
-    else if (is_array(type))
-      statement("const k::Resource* ", to_name(id), " = &", first, ";");
-    else if (variable.storage == spv::StorageClassUniformConstant)
-      statement("const ", descriptor_target(type), "* ", to_name(id), " = ", descriptor_member(type, first), ";");
-    else
-      statement("std::byte* ", to_name(id), " = ", first, ".data;");
-    if (options_.robust && is_buffer(variable.storage) && !is_array(type))
-      statement("std::size_t ", to_name(id), "_size = ", first, ".size;");
-  });
-  statement("");
-}
-
 void Printer::print_constants() {
   std::vector<std::uint32_t> ids(composite_constants_.begin(), composite_constants_.end());
   std::sort(ids.begin(), ids.end());

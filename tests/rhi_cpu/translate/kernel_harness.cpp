@@ -38,9 +38,8 @@ const fs::path& kernel_headers() {
   static const ScratchFolder folder;
   static const bool written = [] {
     const fs::path headers = folder.path() / "rhi_cpu/kernel";
-    fs::create_directories(headers);
-    for (const fs::directory_entry& header : fs::directory_iterator(TANDEM_SOURCE_DIRECTORY "/rhi_cpu/kernel"))
-      fs::copy_file(header.path(), headers / header.path().filename());
+    fs::create_directories(headers.parent_path());
+    fs::copy(TANDEM_SOURCE_DIRECTORY "/rhi_cpu/kernel", headers, fs::copy_options::recursive);
     const std::string header = (headers / "kernel.hpp").string();
     const std::string command =
         compiler_command() + " -I " + folder.path().string() + " -x c++-header -o " + header + ".gch " + header;
