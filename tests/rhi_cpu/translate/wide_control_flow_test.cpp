@@ -19,8 +19,8 @@ using tandem::cpu::WideFunction;
 void check_order(const FlowGraph& graph, const ControlFlow& flow) {
   for (const int block : flow.order)
     for (const int next : graph.blocks[static_cast<std::size_t>(block)].successors) {
-      const bool is_back = flow.position[static_cast<std::size_t>(next)] <=
-                           flow.position[static_cast<std::size_t>(block)];
+      const bool is_back =
+          flow.position[static_cast<std::size_t>(next)] <= flow.position[static_cast<std::size_t>(block)];
       CHECK(is_back == (flow.is_header(next) && flow.dominates(next, block)));
     }
 }
