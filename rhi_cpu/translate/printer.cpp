@@ -135,17 +135,23 @@ void Printer::set_up_variables() {
   // Every Function variable is declared where its function begins, which is what SPIR-V says, instead of where
   // SPIRV-Cross finds its first use. The initialiser that it sees only makes it do so.
   ir.for_each_typed_id<SPIRFunction>([&](std::uint32_t, SPIRFunction& function) {
+    const auto assign_where_stored = [](SPIRVariable& variable) {
+      variable.loop_variable = false;
+      variable.statically_assigned = false;
+      variable.remapped_variable = false;
+      variable.static_expression = 0;
+    };
     for (const std::uint32_t id : function.local_variables) {
       auto& variable = get<SPIRVariable>(id);
       if (variable.initializer)
         initializers_[id] = variable.initializer;
       else
         variable.initializer = any_constant;
-      variable.loop_variable = false;
-      variable.statically_assigned = false;
-      variable.remapped_variable = false;
-      variable.static_expression = 0;
+      assign_where_stored(variable);
     }
+    // SPIRV-Cross takes an array parameter that is stored to once for a table.
+    for (const auto& parameter : function.arguments)
+      if (auto* variable = maybe_get<SPIRVariable>(parameter.id)) assign_where_stored(*variable);
   });
   ir.for_each_typed_id<SPIRBlock>([](std::uint32_t, SPIRBlock& block) { block.loop_variables.clear(); });
 

@@ -26,6 +26,11 @@ inline std::byte* lane(const Addresses& addresses, int lane) {
   return reinterpret_cast<std::byte*>(addresses.of_lane[lane]);
 }
 
+/// place = value in the lanes of the mask.
+inline void assign(Mask mask, Addresses& place, const Addresses& value) {
+  place.of_lane = kernel::select(mask, value.of_lane, place.of_lane);
+}
+
 /// Addresses that all lanes may read: where the mask has none, one of another lane.
 /// @param mask not empty
 inline Addresses readable(Mask mask, const Addresses& addresses) {

@@ -65,8 +65,9 @@ std::vector<std::uint32_t> traced_spirv(const std::string& glsl, rhi::ShaderStag
 Kernel::Kernel(const std::string& glsl, const KernelOptions& options) : Kernel(compute_spirv(glsl), options) {}
 
 Kernel::Kernel(const std::vector<std::uint32_t>& spirv, const KernelOptions& options) {
-  const cpu::Translation translation = cpu::translate(options.optimize ? optimized(spirv) : spirv, "test.comp",
-                                                      {.specialization = options.specialization});
+  const cpu::Translation translation =
+      cpu::translate(options.optimize ? optimized(spirv) : spirv, "test.comp",
+                     {.specialization = options.specialization, .lanes = options.lanes});
   const fs::path source = folder_.path() / "kernel.cpp";
   const fs::path library = folder_.path() / "kernel.so";
   std::ofstream(source) << translation.source;
