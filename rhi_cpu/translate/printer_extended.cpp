@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "rhi/spirv/names.hpp"
-#include "rhi_cpu/translate/extended_instructions.hpp"
+#include "rhi_cpu/translate/instructions/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {

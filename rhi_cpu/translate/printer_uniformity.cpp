@@ -151,7 +151,7 @@ void Printer::analyze_uniformity() {
   for (const std::uint32_t id : functions) find_definitions(id);
 
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
-    if (variable.phi_variable) return;
+    if (variable.phi_variable || !is_pointer(get<Type>(variable.basetype))) return;
     if (variable.storage == spv::StorageClassPrivate) uniformity_.varying_contents.insert(id);
     if (variable.storage == spv::StorageClassInput && has_decoration(id, spv::DecorationBuiltIn) &&
         !is_common(get_decoration(id, spv::DecorationBuiltIn)))
@@ -228,7 +228,8 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           // Those that write through a pointer.
           for (const std::uint32_t word : i.words())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
-                variable != nullptr && !variable->phi_variable && variable->storage == spv::StorageClassFunction) {
+                variable != nullptr && !variable->phi_variable && variable->storage == spv::StorageClassFunction &&
+                is_pointer(get<Type>(variable->basetype))) {
               mark(uniformity_.varying_contents, root_variable(word));
               varies = true;
             }
