@@ -35,11 +35,13 @@ Expression Generator::descend(Expression from, const Type& to) {
     }
     const bool is_vector = whole.is_vector();
     const int length = whole.is_array() ? whole.length : is_vector ? whole.rows : whole.columns;
-    const Type part = whole.is_array() ? whole.element() : whole.is_vector() ? whole.component() : [&] {
-      Type column = whole;
-      column.columns = 1;
-      return column;
-    }();
+    const Type part = whole.is_array()    ? whole.element()
+                      : whole.is_vector() ? whole.component()
+                                          : [&] {
+                                              Type column = whole;
+                                              column.columns = 1;
+                                              return column;
+                                            }();
     if (is_vector && choices_.chance(50)) {
       from = {part, fmt::format("$0.{}", "xyzw"[choices_.below(length)]), {std::move(from)}};
     } else {
@@ -59,7 +61,8 @@ Expression Generator::literal(const Type& type) {
                            type.scalar == Scalar::i8;
     const int value = choices_.between(is_signed ? -9 : 0, 40);
     if (type.scalar == Scalar::i32) return {type, value < 0 ? fmt::format("({})", value) : fmt::format("{}", value)};
-    if (type.scalar == Scalar::u32) return {type, fmt::format("{}u", choices_.chance(20) ? choices_.word() : static_cast<std::uint32_t>(value))};
+    if (type.scalar == Scalar::u32)
+      return {type, fmt::format("{}u", choices_.chance(20) ? choices_.word() : static_cast<std::uint32_t>(value))};
     return {type, fmt::format("{}({})", name_of(type), value)};
   }
   Expression result{type, name_of(type) + "("};
@@ -88,7 +91,8 @@ Expression Generator::leaf(const Type& type) {
     const Variable& variable = *choices_.of(fitting);
     const bool nests = variable.type.is_array() || variable.type.is_struct();
     // An index is a leaf too: arrays in indices of arrays must end.
-    if (!nests || type != Type{Scalar::u32} || choices_.chance(50)) return descend({variable.type, variable.name}, type);
+    if (!nests || type != Type{Scalar::u32} || choices_.chance(50))
+      return descend({variable.type, variable.name}, type);
   }
   return choices_.chance(60) ? read(type) : literal(type);
 }
@@ -96,7 +100,8 @@ Expression Generator::leaf(const Type& type) {
 /// What all invocations of a workgroup have in common.
 Expression Generator::uniform(const Type& type) {
   if (type == Type{Scalar::u32}) {
-    const char* name = choices_.of({"pc.n", "pc.m", "uni.n", "uni.u[$0][$1]", "gl_WorkGroupID.x", "gl_NumWorkGroups.y"});
+    const char* name =
+        choices_.of({"pc.n", "pc.m", "uni.n", "uni.u[$0][$1]", "gl_WorkGroupID.x", "gl_NumWorkGroups.y"});
     if (std::string(name) != "uni.u[$0][$1]") return {type, name};
     Expression row = index(4), column = index(4);
     return {type, name, {std::move(row), std::move(column)}};
@@ -127,8 +132,8 @@ Expression Generator::read(const Type& type) {
       case 4:
         return {type, "uni.u[$0][$1]", {index(4), index(4)}};
       case 5:
-        return {type, choices_.of({"gl_WorkGroupID.x", "gl_WorkGroupID.y", "gl_NumWorkGroups.x", "gl_LocalInvocationID.y",
-                                   "gl_GlobalInvocationID.x"})};
+        return {type, choices_.of({"gl_WorkGroupID.x", "gl_WorkGroupID.y", "gl_NumWorkGroups.x",
+                                   "gl_LocalInvocationID.y", "gl_GlobalInvocationID.x"})};
       case 6:
         return {type, "gl_LocalInvocationIndex"};
       case 7:
@@ -235,8 +240,7 @@ Expression Generator::expression(const Type& type, int depth) {
   if (type.is_array() || type.is_struct())
     return choices_.chance(60) ? leaf(type) : choices_.chance(30) ? literal(type) : constructed(type, depth);
   if (choices_.chance(20)) return leaf(type);
-  if (choices_.chance(10))
-    return make(type, "($0 ? $1 : $2)", {{Scalar::boolean}, type, type}, depth);
+  if (choices_.chance(10)) return make(type, "($0 ? $1 : $2)", {{Scalar::boolean}, type, type}, depth);
   if (type.is_matrix()) return matrix(type, depth);
   if (type.rows > 1 && choices_.chance(15)) return constructed(type, depth);
   if (type.rows > 1 && choices_.chance(15)) {

@@ -83,10 +83,10 @@ layout(push_constant) uniform Constants {{ uint n; int i; float f; uint m; vec4 
   }
   text += fmt::format(R"(uint id = 0u;
 uint h = 17u;
-float fix(float x) {{ return floor(clamp(x, -1000.0, 1000.0) * 64.0) * 0.015625; }}
-vec2 fix(vec2 x) {{ return floor(clamp(x, -1000.0, 1000.0) * 64.0) * 0.015625; }}
-vec3 fix(vec3 x) {{ return floor(clamp(x, -1000.0, 1000.0) * 64.0) * 0.015625; }}
-vec4 fix(vec4 x) {{ return floor(clamp(x, -1000.0, 1000.0) * 64.0) * 0.015625; }}
+float fix(float x) {{ float y = floor(clamp(x, -1000.0, 1000.0) * 64.0) * 0.015625; return y == 0.0 ? 0.0 : y; }}
+vec2 fix(vec2 x) {{ return vec2(fix(x.x), fix(x.y)); }}
+vec3 fix(vec3 x) {{ return vec3(fix(x.x), fix(x.y), fix(x.z)); }}
+vec4 fix(vec4 x) {{ return vec4(fix(x.xy), fix(x.zw)); }}
 )");
   for (const auto& [columns, rows] : fixed_matrices_) {
     const std::string name = name_of(Type{Scalar::f32, rows, columns});
@@ -123,7 +123,10 @@ FunctionTree Generator::function(int number) {
     parameter.is_out = kind >= 2;
     signature.has_out |= parameter.is_out;
     const std::string name = fmt::format("p{}", i);
-    parameters += (i == 0 ? "" : ", ") + std::string(!parameter.is_out ? "" : parameter.is_in ? "inout " : "out ") +
+    parameters += (i == 0 ? "" : ", ") +
+                  std::string(!parameter.is_out ? ""
+                              : parameter.is_in ? "inout "
+                                                : "out ") +
                   declaration(parameter.type, name);
     if (!parameter.is_in) body.push_back({name + " = $0;", {stored(parameter.type, 1)}});
     variables_.push_back({name, parameter.type});
@@ -159,7 +162,8 @@ FunctionTree Generator::main_function() {
   }
   for (const Variable& variable : variables_) {
     Expression scalar = some_scalar({variable.type, variable.name});
-    const char* text = scalar.type.scalar == Scalar::f32 ? "h = h * 33u + floatBitsToUint($0);" : "h = h * 33u + uint($0);";
+    const char* text =
+        scalar.type.scalar == Scalar::f32 ? "h = h * 33u + floatBitsToUint($0);" : "h = h * 33u + uint($0);";
     body.push_back({text, {std::move(scalar)}});
   }
   body.push_back({fmt::format("own[id * {0}u] += h;", own_words)});
@@ -172,7 +176,8 @@ GeneratedShader Generator::shader() {
   struct Size {
     std::uint32_t sides[3];
   };
-  constexpr Size sizes[] = {{{16, 1, 1}}, {{8, 4, 1}}, {{4, 2, 2}}, {{5, 3, 1}}, {{64, 1, 1}}, {{1, 1, 1}}, {{21, 1, 1}}};
+  constexpr Size sizes[] = {{{16, 1, 1}}, {{8, 4, 1}}, {{4, 2, 2}}, {{5, 3, 1}},
+                            {{64, 1, 1}}, {{1, 1, 1}}, {{21, 1, 1}}};
   const Size size = sizes[features_.subgroups ? 4 * choices_.below(2) : choices_.below(7)];
   for (int i = 0; i < 3; ++i) size_[i] = size.sides[i];
   choose_structs();

@@ -66,8 +66,8 @@ class Generator {
  private:
   /// Where a statement stands.
   struct Place {
-    int depth = 0;        ///< of nesting
-    int loops = 0;        ///< around it, in this function
+    int depth = 0;  ///< of nesting
+    int loops = 0;  ///< around it, in this function
     bool may_break = false;
     bool may_return = true;
   };
@@ -129,9 +129,9 @@ class Generator {
   std::vector<Variable> variables_;  ///< of the function that is generated
   const Signature* current_ = nullptr;
   std::set<std::pair<int, int>> fixed_matrices_;  ///< columns and rows of those that fix() is called with
-  int budget_ = 0;  ///< statements that the function may still have
+  int budget_ = 0;                                ///< statements that the function may still have
   int names_ = 0;
-  int calls_ = 0;   ///< in the function that is generated
+  int calls_ = 0;  ///< in the function that is generated
 };
 
 }  // namespace tandem::family

@@ -77,8 +77,7 @@ Expression Generator::integer(const Type& type, int depth) {
     case 7:
       return make(type, choices_.of({"(~$0)", "(-$0)"}), {type}, depth);
     case 8:
-      return make(type, fmt::format("($0 {} ($1 & {}(7)))", choices_.of({"<<", ">>"}), one),
-                  {type, type}, depth);
+      return make(type, fmt::format("($0 {} ($1 & {}(7)))", choices_.of({"<<", ">>"}), one), {type, type}, depth);
     case 9:
       return make(type, choices_.of({"min($0, $1)", "max($0, $1)"}), {type, type}, depth);
     case 10:
@@ -86,13 +85,16 @@ Expression Generator::integer(const Type& type, int depth) {
     case 11: {
       if (type.rows > 1 && !has_32_bits) return make(type, "($0 + $1)", {type, scalar}, depth);
       other.scalar = choices_.of({Scalar::i32, Scalar::u32});
-      if (has_small_) other.scalar = choices_.of({Scalar::i64, Scalar::u64, Scalar::i16, Scalar::u16, Scalar::i8, Scalar::u8, Scalar::i32});
+      if (has_small_)
+        other.scalar =
+            choices_.of({Scalar::i64, Scalar::u64, Scalar::i16, Scalar::u16, Scalar::i8, Scalar::u8, Scalar::i32});
       return make(type, name + "($0)", {other}, depth);
     }
     case 12: {
       if (!has_32_bits) return make(type, "($0 * $1)", {type, type}, depth);
       other.scalar = Scalar::f32;
-      return make(type, fmt::format("{}(clamp($0, {:.1f}, 100000.0))", name, is_unsigned ? 0.0 : -100000.0), {other}, depth);
+      return make(type, fmt::format("{}(clamp($0, {:.1f}, 100000.0))", name, is_unsigned ? 0.0 : -100000.0), {other},
+                  depth);
     }
     case 13:
       other.scalar = Scalar::boolean;
@@ -101,7 +103,8 @@ Expression Generator::integer(const Type& type, int depth) {
       return is_unsigned ? make(type, "bitfieldReverse($0)", {type}, depth)
                          : make(type, choices_.of({"bitCount($0)", "findLSB($0)", "findMSB($0)"}), {type}, depth);
     case 15:
-      return make(type, "bitfieldExtract($0, int($1 & 15u), int($2 & 15u))", {type, {Scalar::u32}, {Scalar::u32}}, depth);
+      return make(type, "bitfieldExtract($0, int($1 & 15u), int($2 & 15u))", {type, {Scalar::u32}, {Scalar::u32}},
+                  depth);
     case 16:
       return make(type, "bitfieldInsert($0, $1, int($2 & 15u), int($3 & 15u))",
                   {type, type, {Scalar::u32}, {Scalar::u32}}, depth);
@@ -110,7 +113,8 @@ Expression Generator::integer(const Type& type, int depth) {
       return make(type, choices_.of({"abs($0 >> 1)", "sign($0)"}), {type}, depth);
     case 18:
       other.scalar = Scalar::f32;
-      return make(type, (is_unsigned ? "floatBitsToUint($0)" : "floatBitsToInt($0)"), {other}, depth);
+      return make(type, (is_unsigned ? "(floatBitsToUint($0) & 0x7fffffffu)" : "(floatBitsToInt($0) & 0x7fffffff)"),
+                  {other}, depth);
     default:
       return make(type, fmt::format("($0 {} $1)", choices_.of({"+", "-", "*", "^"})), {type, scalar}, depth);
   }
@@ -145,7 +149,8 @@ Expression Generator::real(const Type& type, int depth) {
       return make(type, "sqrt(abs($0))", {type}, depth);
     case 13:
       other.scalar = choices_.of({Scalar::i32, Scalar::u32});
-      return make(type, fmt::format("{}($0 & {})", name_of(type), other.scalar == Scalar::i32 ? "1023" : "1023u"), {other}, depth);
+      return make(type, fmt::format("{}($0 & {})", name_of(type), other.scalar == Scalar::i32 ? "1023" : "1023u"),
+                  {other}, depth);
     case 14:
       other.scalar = Scalar::boolean;
       return make(type, name_of(type) + "($0)", {other}, depth);
@@ -153,7 +158,8 @@ Expression Generator::real(const Type& type, int depth) {
       other.scalar = Scalar::boolean;
       return make(type, "mix($0, $1, $2)", {type, type, other}, depth);
     case 16:
-      if (has_small_ && type.rows == 1) return make(type, "float(int($0) & 255)", {{choices_.of({Scalar::i64, Scalar::i16, Scalar::u8})}}, depth);
+      if (has_small_ && type.rows == 1)
+        return make(type, "float(int($0) & 255)", {{choices_.of({Scalar::i64, Scalar::i16, Scalar::u8})}}, depth);
       return make(type, "($0 - floor($0))", {type}, depth);
     case 17:
       return make(type, "floor($0 * 0.25)", {type}, depth);
@@ -177,7 +183,8 @@ Expression Generator::real(const Type& type, int depth) {
     case 24:
       return make(type, "smoothstep(0.0, 4.0, $0)", {type}, depth);
     default:
-      if (type.rows > 1) return make(type, choices_.of({"reflect($0, $1)", "faceforward($0, $1, $2)"}), {type, type, type}, 1);
+      if (type.rows > 1)
+        return make(type, choices_.of({"reflect($0, $1)", "faceforward($0, $1, $2)"}), {type, type, type}, 1);
       return make(type, "fract($0)", {type}, depth);
   }
 }

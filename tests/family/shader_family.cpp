@@ -22,9 +22,9 @@ using namespace tandem::family;
 
 /// One way to run a shader.
 struct Way {
-  std::string pass = {};           ///< of spirv-opt, first
-  std::optional<Form> form = {};   ///< a kernel of our own
-  rhi::DeviceHandle device = {};   ///< or a device
+  std::string pass = {};          ///< of spirv-opt, first
+  std::optional<Form> form = {};  ///< a kernel of our own
+  rhi::DeviceHandle device = {};  ///< or a device
 
   std::string name() const {
     const std::string place = form ? name_of(*form) : device->info().name;
@@ -69,8 +69,8 @@ class Comparison {
     return reduced(
         shader.tree,
         [&](const ShaderTree& tree) {
-          const GeneratedShader candidate{tree,
-                                          {shader.workgroup_size[0], shader.workgroup_size[1], shader.workgroup_size[2]}};
+          const GeneratedShader candidate{
+              tree, {shader.workgroup_size[0], shader.workgroup_size[1], shader.workgroup_size[2]}};
           try {
             const std::vector<std::uint32_t> spirv = compiled(tree);
             const Results expected = results(spirv, {.form = Form{}}, data_for(candidate, seed_));

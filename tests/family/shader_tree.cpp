@@ -8,7 +8,7 @@
 namespace tandem::family {
 namespace {
 
-constexpr std::array scalar_names = {"bool",    "int",     "uint",     "float",  "int64_t",
+constexpr std::array scalar_names = {"bool",     "int",     "uint",     "float",  "int64_t",
                                      "uint64_t", "int16_t", "uint16_t", "int8_t", "uint8_t"};
 constexpr std::array vector_names = {"bvec",   "ivec",   "uvec",   "vec",   "i64vec",
                                      "u64vec", "i16vec", "u16vec", "i8vec", "u8vec"};
@@ -33,8 +33,7 @@ void print_filled(const std::string& text, std::string& result, const Fill& fill
 }
 
 void print(const Expression& expression, std::string& result) {
-  print_filled(expression.text, result,
-               [&](char, std::size_t number) { print(expression.parts.at(number), result); });
+  print_filled(expression.text, result, [&](char, std::size_t number) { print(expression.parts.at(number), result); });
 }
 
 void print(const std::vector<Statement>& list, int depth, std::string& result) {

@@ -209,11 +209,11 @@ Statement Generator::store() {
   }
 }
 
-/// Bits that no rounding hides.
+/// Bits that no rounding hides, but for the sign, as devices need not keep that of zero.
 Statement Generator::hashed() {
   switch (choices_.below(3)) {
     case 0:
-      return {"h = h * 31u + floatBitsToUint($0);", {expression({Scalar::f32}, 2)}};
+      return {"h = h * 31u + (floatBitsToUint($0) & 0x7fffffffu);", {expression({Scalar::f32}, 2)}};
     case 1:
       return {"h = (h << 5) ^ (h >> 3) ^ $0;", {expression({Scalar::u32}, 2)}};
     default:
@@ -226,15 +226,15 @@ Statement Generator::exchange() {
   const std::uint32_t size = size_[0] * size_[1] * size_[2];
   Expression value = expression({Scalar::u32}, 2);
   if (features_.barriers && (!features_.subgroups || choices_.chance(50)))
-    return {fmt::format("common[gl_LocalInvocationIndex] = $0; barrier(); h += common[(gl_LocalInvocationIndex + {}u) % "
-                        "{}u]; barrier();",
-                        choices_.below(9), size),
-            {std::move(value)}};
-  return {fmt::format("h += {};",
-                      choices_.of({"subgroupClusteredAdd($0, 4u)", "subgroupClusteredXor($0, 4u)",
-                                   "subgroupClusteredMin($0, 4u)", "subgroupQuadSwapHorizontal($0)",
-                                   "subgroupQuadBroadcast($0, 2u)", "subgroupShuffleXor($0, 3u)",
-                                   "subgroupQuadSwapDiagonal($0)"})),
+    return {
+        fmt::format("common[gl_LocalInvocationIndex] = $0; barrier(); h += common[(gl_LocalInvocationIndex + {}u) % "
+                    "{}u]; barrier();",
+                    choices_.below(9), size),
+        {std::move(value)}};
+  return {fmt::format("h += {};", choices_.of({"subgroupClusteredAdd($0, 4u)", "subgroupClusteredXor($0, 4u)",
+                                               "subgroupClusteredMin($0, 4u)", "subgroupQuadSwapHorizontal($0)",
+                                               "subgroupQuadBroadcast($0, 2u)", "subgroupShuffleXor($0, 3u)",
+                                               "subgroupQuadSwapDiagonal($0)"})),
           {std::move(value)}};
 }
 
