@@ -60,3 +60,12 @@ TEST_CASE("in lanes: an address from a loop that lanes leave in different rounds
   do own[id]++; while (own[id] < data[id * 2 & 15]);
   own[id] *= 3;)");
 }
+
+TEST_CASE("in lanes: what a function writes through a pointer beside its result") {
+  check_lanes(R"(
+  float x = float(data[7]) * 0.75, y = float(id) * 0.75, whole;
+  own[id] = uint(modf(x, all) * 8.0) + uint(all) * 100u;
+  own[id] += uint(modf(y, whole) * 8.0) * 10000u + uint(whole);
+  own[id] += uint(modf(x, whole) * 8.0) * 1000000u + uint(whole);)",
+              "float all = 0.0;");
+}
