@@ -34,6 +34,7 @@ constexpr std::uint32_t most_threads = 4096;
 
 constexpr std::string_view embree_name = "cpu";
 constexpr std::string_view scalar_name = "cpu-scalar";
+constexpr std::string_view wide_name = "cpu-wide";
 constexpr std::string_view exact_name = "cpu-exact";
 
 class Device final : public rhi::Device {
@@ -221,7 +222,7 @@ DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKer
               {.robust = desc.robust_access,
                .watched = desc.time_limit.count() > 0,
                .subgroup_size = info.limits.subgroup_size,
-               .lanes = desc.name == scalar_name ? 1 : desc.lanes},
+               .lanes = desc.name == scalar_name ? 1 : desc.name == wide_name ? native_lanes() : desc.lanes},
               desc.kernel_cache, desc.on_message) {}
 
 std::span<const std::string_view> device_names() {
@@ -231,7 +232,7 @@ std::span<const std::string_view> device_names() {
 
 bool is_device_name(std::string_view name) {
   const std::span<const std::string_view> names = device_names();
-  return name == scalar_name || std::find(names.begin(), names.end(), name) != names.end();
+  return name == scalar_name || name == wide_name || std::find(names.begin(), names.end(), name) != names.end();
 }
 
 rhi::DeviceInfo device_info(std::string_view name) {
