@@ -32,6 +32,76 @@ void check_forms(const std::string& glsl, const Words& words, std::uint32_t work
   }
 }
 
+TEST_CASE("halves of the wide form have the bits of the scalar form") {
+  // The lower half of a word is x, the upper one y; all x occur.
+  const std::string glsl = R"(
+#extension GL_EXT_shader_explicit_arithmetic_types : require
+layout(local_size_x = 64) in;
+layout(binding = 0) buffer B { uint b[]; };
+uint hash;
+void add(uint bits) { hash = (hash ^ bits) * 0x01000193u; hash ^= hash >> 15; }
+void add(float16_t value) { add(value == value ? uint(float16BitsToUint16(value)) : 0x7e00u); }
+void add(bool value) { add(uint(value)); }
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  float16_t x = uint16BitsToFloat16(uint16_t(b[i])), y = uint16BitsToFloat16(uint16_t(b[i] >> 16));
+  float16_t one = float16_t(1), half_of_one = float16_t(0.5);
+  hash = 0;
+  add(x + y);
+  add(x - y);
+  add(x * y);
+  add(x / y);
+  add(-x);
+  add(x == y);
+  add(x != y);
+  add(x < y);
+  add(x <= y);
+  add(x > y);
+  add(x >= y);
+  add(min(x, y));
+  add(max(x, y));
+  add(clamp(x, y, one));
+  add(abs(x));
+  add(sign(x));
+  add(floor(x));
+  add(ceil(x));
+  add(trunc(x));
+  add(fract(x));
+  add(mod(x, y));
+  add(mix(x, y, half_of_one));
+  add(step(x, y));
+  add(smoothstep(x, y, half_of_one));
+  add(sqrt(x));
+  add(isinf(x));
+  add(float16_t(float(x) * 1.001));
+  add(float16_t(double(x) * 1.001));
+  add(x == x ? floatBitsToUint(float(x)) : 0u);
+  if (abs(x) < float16_t(60000)) {
+    add(uint(int(x)));
+    add(uint(abs(x)));
+    add(float16_t(int(x)));
+  }
+  f16vec3 v = f16vec3(x, y, half_of_one), w = v.zxy;
+  add(dot(v, w));
+  add(length(v * float16_t(0.125)));
+  add(cross(v, w).y);
+  add((v + w * one).x);
+  v /= w;
+  v[i % 3u] += one;
+  add(v.z);
+  add((f16mat2(x, y, one, half_of_one) * v.xy).y);
+  add(any(lessThan(v, w)));
+  add((vec3(v) * 3.0).x < 1.0);
+  add(f16vec2(vec2(0.1, 0.2) * float(y)).y);
+  b[i] = hash;
+}
+)";
+  constexpr std::uint32_t halves = 65536;
+  Words words(halves);
+  for (std::uint32_t i = 0; i < halves; ++i) words[i] = i | ((i * 0x9e3779b1u) & 0xffff0000u);
+  check_forms(glsl, words, halves / 64);
+}
+
 TEST_CASE("a negative fraction becomes the integer 0, and that the float +0") {
   const std::string glsl = R"(
 #extension GL_EXT_shader_explicit_arithmetic_types : require
