@@ -151,7 +151,8 @@ void Printer::analyze_uniformity() {
   for (const std::uint32_t id : functions) find_definitions(id);
 
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
-    if (variable.phi_variable) return;
+    // Parameters that are values are variables of SPIRV-Cross too.
+    if (variable.phi_variable || !is_pointer(get<Type>(variable.basetype))) return;
     if (variable.storage == spv::StorageClassPrivate) uniformity_.varying_contents.insert(id);
     if (variable.storage == spv::StorageClassInput && has_decoration(id, spv::DecorationBuiltIn) &&
         !is_common(get_decoration(id, spv::DecorationBuiltIn)))

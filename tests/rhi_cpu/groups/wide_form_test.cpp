@@ -119,5 +119,16 @@ void main() {
   for (const std::uint32_t lanes : {1u, 16u}) CHECK(run_with(lanes, glsl, Words(16, 0xbf000000u), 1) == zeros);
 }
 
+TEST_CASE("functions that are too much to inline take values") {
+  std::string glsl = "layout(local_size_x = 16) in;\nlayout(binding = 0) buffer B { uint b[]; };\n";
+  glsl += "uint f0(const uint x, const uint y) { return x * 3u + y; }\n";
+  constexpr int depth = 12;
+  for (int i = 1; i <= depth; ++i)
+    glsl += fmt::format("uint f{0}(const uint x, const uint y) {{ return f{1}(x, y) ^ f{1}(y, x + {0}u); }}\n", i,
+                        i - 1);
+  glsl += fmt::format("void main() {{ uint i = gl_GlobalInvocationID.x; b[i] = f{}(b[i], 7u); }}\n", depth);
+  check_forms(glsl, {0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987}, 1);
+}
+
 }  // namespace
 }  // namespace tandem::cpu::test
