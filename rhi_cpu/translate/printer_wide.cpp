@@ -69,6 +69,11 @@ std::string Printer::in_mode(std::uint32_t id, std::string text) {
 
 void Printer::define_wide(std::uint32_t type_id, std::uint32_t id, const std::string& text) {
   const std::string name = fmt::format("v_{}", id);
+  if (mode_ == Mode::lane && is_descriptor(get<Type>(type_id))) {
+    // What the text says of a lane can be said wherever the descriptor is used.
+    set<SPIRExpression>(id, fmt::format("({})", text), type_id, true);
+    return;
+  }
   if (mode_ == Mode::lane) {
     statement(narrow_name(get<Type>(type_id)), " l_", id, " = ", text, ";");
     set<SPIRExpression>(id, fmt::format("l_{}", id), type_id, true);
@@ -156,6 +161,10 @@ void Printer::print_wide_instruction(const Instruction& i) {
       return print_wide_call(i);
     default:
       break;
+  }
+  if (i.has_result() && varies(i.result()) && is_descriptor(get<Type>(i.result_type()))) {
+    const Restored mode(mode_, Mode::lane);
+    return print_instruction(i);
   }
   bool is_common = !i.has_result() || !varies(i.result());
   for (const std::uint32_t word : i.words()) {

@@ -2,10 +2,13 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include "rhi/glsl/compile.hpp"
+#include "rhi/transfer.hpp"
 #include "rhi_cpu/device.hpp"
 #include "tests/rhi_cpu/groups/device.hpp"
 
@@ -128,6 +131,57 @@ TEST_CASE("functions that are too much to inline take values") {
                         i - 1);
   glsl += fmt::format("void main() {{ uint i = gl_GlobalInvocationID.x; b[i] = f{}(b[i], 7u); }}\n", depth);
   check_forms(glsl, {0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987}, 1);
+}
+
+TEST_CASE("a texture that differs between invocations is sampled by each") {
+  const std::string glsl = R"(#version 460
+#extension GL_EXT_nonuniform_qualifier : require
+layout(local_size_x = 16) in;
+layout(binding = 0) buffer B { float b[]; };
+layout(binding = 1) uniform texture2D textures[2];
+layout(binding = 2) uniform sampler s;
+layout(binding = 3) uniform sampler2D combined[2];
+void main() {
+  uint i = gl_LocalInvocationIndex, k = i % 2u;
+  vec2 at = vec2(0.5);
+  b[i] = texture(nonuniformEXT(sampler2D(textures[k], s)), at).x;
+  b[i] += 10.0 * texture(sampler2D(textures[nonuniformEXT(1u - k)], s), at).x;
+  if (i > 3u) b[i] += 100.0 * texture(combined[nonuniformEXT(k)], at).x;
+  b[i] += 1000.0 * textureLod(nonuniformEXT(combined[k]), at, 0.0).x;
+}
+)";
+  const rhi::DeviceHandle device = create_device({}, {});
+  const rhi::ComputePipelineHandle pipeline = device->create_compute_pipeline(
+      {.shader = device->create_shader_module(
+           {.spirv = glsl::compile(glsl, rhi::ShaderStage::compute, "textures.comp"), .label = "textures"}),
+       .specialization = {},
+       .label = "textures"});
+  constexpr std::size_t count = 16;
+  const rhi::BufferHandle buffer =
+      rhi::create_filled(*device, std::vector<float>(count), rhi::BufferUsage::storage, "floats");
+  rhi::BindGroupDesc bindings;
+  bindings.pipeline = pipeline;
+  bindings.label = "textures";
+  const rhi::SamplerHandle sampler = device->create_sampler({.label = "sampler"});
+  bindings.entries = {{.binding = 0, .resource = rhi::BufferRange{buffer}}, {.binding = 2, .resource = sampler}};
+  for (const std::uint32_t k : {0u, 1u}) {
+    const rhi::TextureHandle texture =
+        rhi::create_filled(*device, std::vector<float>{static_cast<float>(k + 1)},
+                           rhi::TextureDesc{.format = rhi::TextureFormat::r32_float, .label = "texture"});
+    bindings.entries.push_back({.binding = 1, .resource = rhi::TextureView{texture}, .array_element = k});
+    bindings.entries.push_back(
+        {.binding = 3, .resource = rhi::SampledTexture{{texture}, sampler}, .array_element = k});
+  }
+  const rhi::CommandListHandle list = device->create_command_list("textures");
+  list->dispatch({.pipeline = pipeline, .bind_groups = {device->create_bind_group(bindings)}});
+  device->submit(list);
+  std::vector<float> expected;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_odd = i % 2 == 1;
+    const float own = is_odd ? 2.0f : 1.0f, other = is_odd ? 1.0f : 2.0f;
+    expected.push_back(own + 10.0f * other + (i > 3 ? 100.0f * own : 0.0f) + 1000.0f * own);
+  }
+  CHECK(rhi::read<float>(*device, buffer, count) == expected);
 }
 
 }  // namespace
