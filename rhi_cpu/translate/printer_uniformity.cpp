@@ -129,7 +129,7 @@ void Printer::find_definitions(std::uint32_t function_id) {
     for (const auto& phi : block.phi_variables) use(use, phi.local_variable, number);
     for (const auto& each : block.ops) {
       const Instruction i = view(each);
-      for (const std::uint32_t word : i.words()) use(use, word, number);
+      for (const std::uint32_t word : i.ids()) use(use, word, number);
     }
     if (block.terminator == SPIRBlock::Select || block.terminator == SPIRBlock::MultiSelect)
       use(use, block.condition, number);
@@ -191,7 +191,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
     for (const auto& each : block.ops) {
       const Instruction i = view(each);
       bool varies = false;
-      for (const std::uint32_t word : i.words()) varies |= is_varying(word);
+      for (const std::uint32_t word : i.ids()) varies |= is_varying(word);
       switch (i.op()) {
         case spv::OpLoad: {
           const std::uint32_t root = root_variable(i.operand(0));
@@ -227,7 +227,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           break;
         case spv::OpExtInst:
           // Those that write through a pointer.
-          for (const std::uint32_t word : i.words())
+          for (const std::uint32_t word : i.ids())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
                 variable != nullptr && !variable->phi_variable && variable->storage == spv::StorageClassFunction) {
               mark(uniformity_.varying_contents, root_variable(word));
@@ -236,7 +236,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           break;
         default:
           varies |= is_atomic(i.op()) || (is_subgroup_operation(i.op()) && !is_ballot_query(i.op()));
-          for (const std::uint32_t word : i.words())
+          for (const std::uint32_t word : i.ids())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
                 variable != nullptr && get<Type>(variable->basetype).basetype == SPIRType::RayQuery)
               varies = true;

@@ -167,7 +167,7 @@ void Printer::print_wide_instruction(const Instruction& i) {
     return print_instruction(i);
   }
   bool is_common = !i.has_result() || !varies(i.result());
-  for (const std::uint32_t word : i.words()) {
+  for (const std::uint32_t word : i.ids()) {
     is_common &= !varies(word);
     if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word)))
       is_common &= !(uniformity_.varying_contents.contains(variable->self) || variable->basetype == 0);

@@ -133,6 +133,25 @@ TEST_CASE("functions that are too much to inline take values") {
   check_forms(glsl, {0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987}, 1);
 }
 
+TEST_CASE("the index of a member is not taken for the id of a variable") {
+  // glslang numbers gl_LocalInvocationIndex among the indices of the array.
+  std::string glsl = R"(
+layout(local_size_x = 16) in;
+layout(binding = 0) buffer B { uint b[]; };
+struct S { uint words[80]; };
+layout(binding = 0) buffer C { S structs[]; };
+void main() {
+  uint at = gl_LocalInvocationIndex;
+  S s = structs[gl_WorkGroupID.x];
+  uint sum = 0u;
+)";
+  for (int i = 0; i < 80; ++i) glsl += fmt::format("  sum += s.words[{}] * {}u;\n", i, i + 1);
+  glsl += "  b[80u + at] = sum + at;\n}\n";
+  Words words(96);
+  for (std::uint32_t i = 0; i < 80; ++i) words[i] = i * i;
+  check_forms(glsl, words, 1);
+}
+
 TEST_CASE("a texture that differs between invocations is sampled by each") {
   const std::string glsl = R"(#version 460
 #extension GL_EXT_nonuniform_qualifier : require
