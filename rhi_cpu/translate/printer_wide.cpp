@@ -184,8 +184,9 @@ void Printer::print_wide_instruction(const Instruction& i) {
 }
 
 void Printer::print_by_lane(const Instruction& i, const std::function<void()>& print) {
-  const bool has_value = i.has_result() && get<Type>(i.result_type()).basetype != SPIRType::Void &&
-                         !is_pointer(get<Type>(i.result_type()));
+  const Type* type = i.has_result() ? &get<Type>(i.result_type()) : nullptr;
+  const bool has_value =
+      type != nullptr && type->basetype != SPIRType::Void && (!is_pointer(*type) || is_buffer(type->storage));
   const std::string name = has_value ? fmt::format("v_{}", i.result()) : "";
   if (has_value && !escapes_.contains(i.result()))
     statement("k::wide_t<", narrow_name(get<Type>(i.result_type())), "> ", name, ";");

@@ -1,6 +1,7 @@
 // The wide form of a kernel gives the bits of the scalar form.
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -127,8 +128,8 @@ TEST_CASE("functions that are too much to inline take values") {
   glsl += "uint f0(const uint x, const uint y) { return x * 3u + y; }\n";
   constexpr int depth = 12;
   for (int i = 1; i <= depth; ++i)
-    glsl += fmt::format("uint f{0}(const uint x, const uint y) {{ return f{1}(x, y) ^ f{1}(y, x + {0}u); }}\n", i,
-                        i - 1);
+    glsl +=
+        fmt::format("uint f{0}(const uint x, const uint y) {{ return f{1}(x, y) ^ f{1}(y, x + {0}u); }}\n", i, i - 1);
   glsl += fmt::format("void main() {{ uint i = gl_GlobalInvocationID.x; b[i] = f{}(b[i], 7u); }}\n", depth);
   check_forms(glsl, {0, 1, 2, 3, 5, 8, 13, 21, 34, 55, 89, 144, 233, 377, 610, 987}, 1);
 }
@@ -150,6 +151,74 @@ void main() {
   Words words(96);
   for (std::uint32_t i = 0; i < 80; ++i) words[i] = i * i;
   check_forms(glsl, words, 1);
+}
+
+TEST_CASE("pointers that differ between invocations are values") {
+  const std::string glsl = R"(#version 460
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+layout(local_size_x = 16) in;
+layout(buffer_reference) buffer Node;
+layout(buffer_reference, buffer_reference_align = 8) buffer Node { uint value; uint more; Node next; };
+layout(binding = 0) buffer B { uint64_t start; uint64_t unused; uint b[]; };
+uint sum(Node node, uint count) {
+  uint result = 0u;
+  for (uint k = 0u; k < count; ++k) {
+    result = result * 3u + node.value;
+    if (node.value == 5u) return result;
+    node = node.next;
+  }
+  return result;
+}
+Node chosen(bool condition, Node a, Node c) {
+  if (condition) return a;
+  return c;
+}
+void main() {
+  uint i = gl_LocalInvocationIndex;
+  Node mine = Node(start + 16u + 128u + i * 16u), first = Node(start + 16u + 128u);
+  mine.value = i;
+  mine.more = 100u + i;
+  mine.next = Node(start + 16u + 128u + ((i * 5u + 1u) % 16u) * 16u);
+  barrier();
+  Node other = i > 7u ? mine.next : chosen(i % 3u == 0u, mine, first);
+  b[i] = sum(mine, i) ^ (other.more << 20) ^ uint(uint64_t(other) - start);
+  uvec2 halves = uvec2(other);
+  b[16u + i] = (halves.x - uvec2(mine).x) + Node(halves).value;
+}
+)";
+  constexpr std::size_t count = 4 + 32 + 64;
+  std::vector<Words> results;
+  for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
+    rhi::DeviceDesc desc;
+    desc.lanes = lanes;
+    const rhi::DeviceHandle device = create_device(desc, {});
+    const rhi::ComputePipelineHandle pipeline = device->create_compute_pipeline(
+        {.shader = device->create_shader_module(
+             {.spirv = glsl::compile(glsl, rhi::ShaderStage::compute, "pointers.comp"), .label = "pointers"}),
+         .specialization = {},
+         .label = "pointers"});
+    const rhi::BufferHandle buffer = device->create_buffer(
+        {.size = count * 4, .usage = rhi::BufferUsage::storage | rhi::BufferUsage::device_address, .label = "nodes"});
+    // As two words, relative to which the results are the same in every run.
+    Words words(count);
+    const std::uint64_t address = buffer->device_address();
+    words[0] = static_cast<std::uint32_t>(address);
+    words[1] = static_cast<std::uint32_t>(address >> 32);
+    const rhi::CommandListHandle list = device->create_command_list("pointers");
+    list->upload(buffer, 0, std::as_bytes(std::span(words)));
+    rhi::BindGroupDesc bindings;
+    bindings.pipeline = pipeline;
+    bindings.entries.push_back({.binding = 0, .resource = rhi::BufferRange{buffer}});
+    bindings.label = "pointers";
+    list->dispatch({.pipeline = pipeline, .bind_groups = {device->create_bind_group(bindings)}});
+    device->submit(list);
+    const Words found = rhi::read<std::uint32_t>(*device, buffer, count);
+    results.emplace_back(found.begin() + 4, found.begin() + 4 + 32);
+    CHECK(results.back() == results.front());
+  }
+  CHECK(results.front()[2] != 0);
 }
 
 TEST_CASE("a texture that differs between invocations is sampled by each") {
@@ -188,8 +257,7 @@ void main() {
         rhi::create_filled(*device, std::vector<float>{static_cast<float>(k + 1)},
                            rhi::TextureDesc{.format = rhi::TextureFormat::r32_float, .label = "texture"});
     bindings.entries.push_back({.binding = 1, .resource = rhi::TextureView{texture}, .array_element = k});
-    bindings.entries.push_back(
-        {.binding = 3, .resource = rhi::SampledTexture{{texture}, sampler}, .array_element = k});
+    bindings.entries.push_back({.binding = 3, .resource = rhi::SampledTexture{{texture}, sampler}, .array_element = k});
   }
   const rhi::CommandListHandle list = device->create_command_list("textures");
   list->dispatch({.pipeline = pipeline, .bind_groups = {device->create_bind_group(bindings)}});
