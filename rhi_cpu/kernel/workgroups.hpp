@@ -26,6 +26,12 @@ class Turns {
     fibres_->switch_to(*fibres_, index + 1 == count_ ? 0 : index + 1);
   }
 
+  /// The same of a subgroup that is one fibre, at a barrier that not all of its invocations may have reached.
+  void barrier_of_lanes(bool are_all, std::uint32_t index, std::uint32_t place) {
+    if (!are_all) fibres_->fail(*fibres_);
+    barrier(index, place);
+  }
+
   /// @return what a FibreFunction returns that has ended
   std::uint32_t end(std::uint32_t index) {
     arrive(index, 0);

@@ -16,6 +16,7 @@
 #include "rhi_cpu/translate/folding/constant_folding.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/supported.hpp"
+#include "rhi_cpu/translate/wide/value_parameters.hpp"
 
 namespace tandem::cpu {
 namespace {
@@ -173,7 +174,7 @@ std::vector<std::uint32_t> with_values_for_variables(std::span<const std::uint32
     optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass());
     if (can_remove_dead_code) optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(true));
   };
-  std::vector<std::uint32_t> words = optimize(spirv, label, values_for_variables);
+  std::vector<std::uint32_t> words = optimize(with_value_parameters(spirv), label, values_for_variables);
   // What is inlined has more values in place of variables, and more that all lanes have in common; too much of it takes
   // the C++ compiler minutes.
   constexpr std::uint64_t inlining_limit = 4000;

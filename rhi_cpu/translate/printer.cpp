@@ -135,17 +135,23 @@ void Printer::set_up_variables() {
   // Every Function variable is declared where its function begins, which is what SPIR-V says, instead of where
   // SPIRV-Cross finds its first use. The initialiser that it sees only makes it do so.
   ir.for_each_typed_id<SPIRFunction>([&](std::uint32_t, SPIRFunction& function) {
+    const auto assign_where_stored = [](SPIRVariable& variable) {
+      variable.loop_variable = false;
+      variable.statically_assigned = false;
+      variable.remapped_variable = false;
+      variable.static_expression = 0;
+    };
     for (const std::uint32_t id : function.local_variables) {
       auto& variable = get<SPIRVariable>(id);
       if (variable.initializer)
         initializers_[id] = variable.initializer;
       else
         variable.initializer = any_constant;
-      variable.loop_variable = false;
-      variable.statically_assigned = false;
-      variable.remapped_variable = false;
-      variable.static_expression = 0;
+      assign_where_stored(variable);
     }
+    // SPIRV-Cross takes an array parameter that is stored to once for a table.
+    for (const auto& parameter : function.arguments)
+      if (auto* variable = maybe_get<SPIRVariable>(parameter.id)) assign_where_stored(*variable);
   });
   ir.for_each_typed_id<SPIRBlock>([](std::uint32_t, SPIRBlock& block) { block.loop_variables.clear(); });
 
@@ -278,50 +284,6 @@ std::uint32_t Printer::first_resource_of(std::uint32_t variable) const {
     first += std::max(each.count, 1u);  // an array without a length is behind one resource
   }
   return first;
-}
-
-void Printer::print_members() {
-  statement("struct Invocation {");
-  if (is_traced()) {
-    print_traced_members();
-  } else {
-    statement("const k::Resource* resources;");
-    statement("const std::byte* push_constants;");
-    const bool wide = is_wide();
-    for (const char* built_in : {"NumWorkgroups", "WorkgroupId"}) statement("k::uvec3 built_in_", built_in, ";");
-    for (const char* built_in : {"LocalInvocationId", "GlobalInvocationId"})
-      statement(wide ? "k::wide_t<k::uvec3>" : "k::uvec3", " built_in_", built_in, ";");
-    statement(wide ? "k::Lanes<k::uint>" : "k::uint", " built_in_LocalInvocationIndex;");
-    if (options_.watched) statement("const k::Watch* watch;");
-    if (needs_group()) statement("Workgroup* own_group;");
-    if (needs_lanes()) statement("k::Lane", lane_types(), " own_lane;");
-  }
-  if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
-  ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
-    if (variable.storage == spv::StorageClassPrivate) {
-      const std::uint32_t type = pointee(variable.basetype);
-      std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
-      mode_ = is_wide() ? Mode::wide : Mode::common;
-      if (variable.initializer) initial = " = " + value(variable.initializer);
-      statement(type_name(type), " ", to_name(id), initial, ";");
-      mode_ = Mode::common;
-      return;
-    }
-    if (!has_decoration(id, spv::DecorationBinding) || binding_of(id) == nullptr) return;
-    const Type& type = get<Type>(pointee(variable.basetype));
-    const std::string first = fmt::format("resources[{}]", first_resource_of(id));
-    if (is_array(type) && binding_of(id)->count == 0)
-      statement("const k::Resource* ", to_name(id), " = reinterpret_cast<const k::Resource*>(", first, ".data);");
-    else if (is_array(type))
-      statement("const k::Resource* ", to_name(id), " = &", first, ";");
-    else if (variable.storage == spv::StorageClassUniformConstant)
-      statement("const ", descriptor_target(type), "* ", to_name(id), " = ", descriptor_member(type, first), ";");
-    else
-      statement("std::byte* ", to_name(id), " = ", first, ".data;");
-    if (options_.robust && is_buffer(variable.storage) && !is_array(type))
-      statement("std::size_t ", to_name(id), "_size = ", first, ".size;");
-  });
-  statement("");
 }
 
 void Printer::print_constants() {

@@ -14,14 +14,17 @@
 #include <spirv_cross/spirv_glsl.hpp>
 
 #include "rhi/shader_reflection.hpp"
-#include "rhi_cpu/translate/extended_instructions.hpp"
+#include "rhi_cpu/translate/address.hpp"
 #include "rhi_cpu/translate/groups/places.hpp"
-#include "rhi_cpu/translate/instruction.hpp"
-#include "rhi_cpu/translate/operations.hpp"
-#include "rhi_cpu/translate/scalar_types.hpp"
+#include "rhi_cpu/translate/instructions/extended_instructions.hpp"
+#include "rhi_cpu/translate/instructions/image_operands.hpp"
+#include "rhi_cpu/translate/instructions/instruction.hpp"
+#include "rhi_cpu/translate/instructions/operations.hpp"
+#include "rhi_cpu/translate/instructions/scalar_types.hpp"
 #include "rhi_cpu/translate/storage_classes.hpp"
 #include "rhi_cpu/translate/translate_options.hpp"
 #include "rhi_cpu/translate/value_layout.hpp"
+#include "rhi_cpu/translate/wide/mode.hpp"
 #include "rhi_cpu/translate/wide/uniformity.hpp"
 
 namespace tandem::cpu {
@@ -63,27 +66,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   using Type = spirv_cross::SPIRType;
   using PrintFunction = void (Printer::*)(const Instruction&);
 
-  /// Where a pointer into a buffer points, and how the memory there is laid out beyond what its type says.
-  struct Address {
-    std::string bytes;                   ///< C++ expression of type std::byte*
-    std::string resource;                ///< C++ expression of the kernel::Resource, "" where it has none
-    std::string data = {};               ///< where the memory begins that `bytes` points into, "" where nobody knows
-    std::string size = {};               ///< and how many bytes it has
-    std::uint32_t offset = 0;            ///< constant part of the distance to `bytes`
-    std::uint32_t matrix_stride = 0;     ///< of the matrices there
-    std::uint32_t component_stride = 0;  ///< of the vector there, 0: tight
-    bool row_major = false;
-    bool varies = false;   ///< wide form: `bytes` are kernel::Addresses
-    bool by_lane = false;  ///< wide form: `bytes` and `resource` are of the lane `lane`
-  };
-
-  /// Wide form: what an instruction is printed for.
-  enum class Mode : std::uint8_t {
-    common,  ///< all lanes at once, with what they have in common; in the scalar form, everything
-    wide,    ///< all lanes at once, each with its own values
-    lane     ///< the lane `lane`
-  };
-
   [[noreturn]] void fail(const std::string& what) const;
 
   // printer.cpp: the translation unit around the functions.
@@ -94,11 +76,10 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::vector<std::uint32_t> live_blocks(std::uint32_t function) const;
   void measure_functions();
   void print_module();
-  void print_members();
   void print_constants();
+  void print_members();
   void print_run();
   void print_wide_run();
-  /// The lanes of a subgroup that are invocations.
   std::string entry_mask() const;
   void print_info();
   const rhi::ShaderBinding* binding_of(std::uint32_t variable) const;
@@ -111,7 +92,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string narrow_name(const Type& type);
   std::string numbers_name(BaseType base, std::uint32_t length) const;
   std::string struct_name(const Type& type);
-  /// A struct and its twin, whose members have a value per lane.
   std::string wide_struct(const std::string& name, const std::string& members, const Type& type);
   std::vector<std::string> member_names(const Type& type) const;
   std::uint32_t array_length(const Type& type) const;
@@ -282,11 +262,9 @@ class Printer : public spirv_cross::CompilerGLSL {
   bool is_wide() const { return options_.lanes != 0; }
   std::vector<std::uint32_t> successors_of(std::uint32_t block_id) const;
   WideFunction& wide_function(std::uint32_t function_id);
-  /// The variable or parameter that a pointer leads into.
   std::uint32_t root_variable(std::uint32_t pointer_id) const;
   void find_definitions(std::uint32_t function_id);
   void analyze_uniformity();
-  /// True when something varies that was not known to.
   bool update_uniformity(std::uint32_t function_id);
 
   // printer_wide.cpp: instructions in the wide form.
@@ -315,7 +293,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_declarations(const WidePrinting& printing, const std::vector<int>& blocks);
   void print_node(WidePrinting& printing, int block);
   void print_child(WidePrinting& printing, int block);
-  /// @param condition of a uniform branch, "" without one
   void print_edge(WidePrinting& printing, int from, int to, const std::string& mask, const std::string& condition);
   void print_terminator(WidePrinting& printing, int block);
   std::string case_text(const spirv_cross::SPIRBlock& block, std::uint64_t number);
@@ -340,14 +317,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_texel_pointer(const Instruction& i);
 
   // printer_sampling.cpp: sampled images and samplers.
-  /// Ids of image operands, 0 for those that an instruction does not have.
-  struct ImageOperands {
-    std::uint32_t detail = 0;  ///< Lod
-    std::uint32_t dx = 0, dy = 0;
-    std::uint32_t offset = 0;
-    std::uint32_t offsets = 0;  ///< four of them
-    std::uint32_t least_detail = 0;
-  };
   /// Those behind the mask, which is operand `mask`; refuses what has no meaning here.
   ImageOperands image_operands(const Instruction& i, std::size_t mask) const;
   /// The kernel::Lookup of an instruction that samples.
@@ -415,10 +384,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string incoming_payload_type_;                                ///< "" without one
 
   // The wide form.
-  struct Definition {
-    std::uint32_t function;
-    int block;
-  };
   std::map<std::uint32_t, WideFunction> wide_functions_;
   Uniformity uniformity_;
   std::map<std::uint32_t, Definition> definitions_;  ///< of values

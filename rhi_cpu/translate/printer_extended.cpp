@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "rhi/spirv/names.hpp"
-#include "rhi_cpu/translate/extended_instructions.hpp"
+#include "rhi_cpu/translate/instructions/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 
 namespace tandem::cpu {
@@ -40,6 +40,11 @@ void Printer::print_extended_call(const Instruction& i, const ExtendedInstructio
 
 void Printer::print_split_into_pointer(const Instruction& i, const char* function) {
   const std::uint32_t number = i.operand(first_own_operand), pointer = i.operand(first_own_operand + 1);
+  if (mode_ == Mode::lane && has_varying_contents(pointer))
+    return define(i, fmt::format("[&] {{ {} second{{}}; const auto first = k::{}({}, second); k::set_lane({}, lane, "
+                                 "second); return first; }}()",
+                                 narrow_name(get<Type>(pointee(expression_type_id(pointer)))), function, value(number),
+                                 to_expression(pointer)));
   if (!is_buffer_pointer(pointer))
     return define(i, fmt::format("k::{}({}, {})", function, value(number), place_at(pointer)));
   const std::uint32_t type_id = pointee(expression_type_id(pointer));

@@ -41,7 +41,7 @@ std::uint32_t Printer::fibre_count() const {
 }
 
 bool Printer::needs_fibres() const {
-  if (is_wide()) return fibre_count() > 1 && has_barriers_;
+  if (is_wide()) return invocation_count() > 1 && has_barriers_;
   return invocation_count() > 1 && (has_barriers_ || (needs_lanes() && options_.subgroup_size > 1));
 }
 
@@ -89,13 +89,17 @@ void Printer::print_control_barrier(const Instruction& i) {
   const auto* scope = maybe_get<SPIRConstant>(i.operand(0));
   if (scope == nullptr) fail("OpControlBarrier whose scope is no constant");
   if (invocation_count() == 1 || scope->scalar() == spv::ScopeInvocation) return statement("k::memory_barrier();");
-  if (is_wide() && (is_of_subgroup(i) || fibre_count() == 1)) return statement("k::memory_barrier();");
+  if (is_wide() && is_of_subgroup(i)) return statement("k::memory_barrier();");
   if (is_of_subgroup(i)) return statement(lane(), ".meet();");
   // The place of the instruction in the module names it.
   const std::ptrdiff_t place = i.words().data() - ir.spirv.data();
-  const char* fibre =
-      is_wide() ? "k::lane(built_in_LocalInvocationIndex, 0) / k::lane_count" : "built_in_LocalInvocationIndex";
-  statement(fmt::format("own_group->turns.barrier({}, {}u);", fibre, place));
+  if (is_wide())
+    statement(
+        fmt::format("own_group->turns.barrier_of_lanes(k::bits_of({}) == k::bits_of(built_in_entered), "
+                    "k::lane(built_in_LocalInvocationIndex, 0) / k::lane_count, {}u);",
+                    mask_, place));
+  else
+    statement(fmt::format("own_group->turns.barrier(built_in_LocalInvocationIndex, {}u);", place));
 }
 
 std::string Printer::lane_types() const {
@@ -129,7 +133,7 @@ void Printer::print_invoke() {
   const k::uint begin = fibre * k::lane_count;
   const k::Lanes<k::uint> index = k::Lanes<k::uint>(begin) + k::lane_indices();
   const k::wide_t<k::uvec3> local = k::local_invocations<{0}u, {1}u>(begin);
-  Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, k::spread(id * k::uvec3({0}u, {1}u, {2}u)) + local, index{3}, this}}
+  Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, k::spread(id * k::uvec3({0}u, {1}u, {2}u)) + local, index, {4}{3}, this}}
       .entry_point({4});
 }}
 )",

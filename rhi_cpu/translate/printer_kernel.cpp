@@ -9,6 +9,53 @@
 
 namespace tandem::cpu {
 
+using spirv_cross::SPIRVariable;
+
+void Printer::print_members() {
+  statement("struct Invocation {");
+  if (is_traced()) {
+    print_traced_members();
+  } else {
+    statement("const k::Resource* resources;");
+    statement("const std::byte* push_constants;");
+    const bool wide = is_wide();
+    for (const char* built_in : {"NumWorkgroups", "WorkgroupId"}) statement("k::uvec3 built_in_", built_in, ";");
+    for (const char* built_in : {"LocalInvocationId", "GlobalInvocationId"})
+      statement(wide ? "k::wide_t<k::uvec3>" : "k::uvec3", " built_in_", built_in, ";");
+    statement(wide ? "k::Lanes<k::uint>" : "k::uint", " built_in_LocalInvocationIndex;");
+    if (wide) statement("k::Mask built_in_entered;");
+    if (options_.watched) statement("const k::Watch* watch;");
+    if (needs_group()) statement("Workgroup* own_group;");
+    if (needs_lanes()) statement("k::Lane", lane_types(), " own_lane;");
+  }
+  if (options_.watched) statement("k::uint rounds = k::rounds_between_looks;");
+  ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
+    if (variable.storage == spv::StorageClassPrivate) {
+      const std::uint32_t type = pointee(variable.basetype);
+      std::string initial = is_opaque(get<Type>(type)) ? "" : "{}";
+      mode_ = is_wide() ? Mode::wide : Mode::common;
+      if (variable.initializer) initial = " = " + value(variable.initializer);
+      statement(type_name(type), " ", to_name(id), initial, ";");
+      mode_ = Mode::common;
+      return;
+    }
+    if (!has_decoration(id, spv::DecorationBinding) || binding_of(id) == nullptr) return;
+    const Type& type = get<Type>(pointee(variable.basetype));
+    const std::string first = fmt::format("resources[{}]", first_resource_of(id));
+    if (is_array(type) && binding_of(id)->count == 0)
+      statement("const k::Resource* ", to_name(id), " = reinterpret_cast<const k::Resource*>(", first, ".data);");
+    else if (is_array(type))
+      statement("const k::Resource* ", to_name(id), " = &", first, ";");
+    else if (variable.storage == spv::StorageClassUniformConstant)
+      statement("const ", descriptor_target(type), "* ", to_name(id), " = ", descriptor_member(type, first), ";");
+    else
+      statement("std::byte* ", to_name(id), " = ", first, ".data;");
+    if (options_.robust && is_buffer(variable.storage) && !is_array(type))
+      statement("std::size_t ", to_name(id), "_size = ", first, ".size;");
+  });
+  statement("");
+}
+
 void Printer::print_wide_run() {
   const std::uint32_t count = workgroup_size_[0] * workgroup_size_[1] * workgroup_size_[2];
   statement(fmt::format(
@@ -20,7 +67,7 @@ void Printer::print_wide_run() {
     for (k::uint begin = 0; begin < {3}u; begin += k::lane_count) {{
       const k::Lanes<k::uint> index = k::Lanes<k::uint>(begin) + k::lane_indices();
       const k::wide_t<k::uvec3> local = k::local_invocations<{0}u, {1}u>(begin);
-      Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, k::spread(id * k::uvec3({0}u, {1}u, {2}u)) + local, index{4}}}
+      Invocation{{dispatch.resources, dispatch.push_constants, count, id, local, k::spread(id * k::uvec3({0}u, {1}u, {2}u)) + local, index, {5}{4}}}
           .entry_point({5});
     }}
   }}

@@ -28,7 +28,7 @@ std::uint32_t Printer::matrix_stride(std::uint32_t struct_type_id, std::uint32_t
 
 std::uint32_t Printer::pointee(std::uint32_t pointer_type_id) const { return get<Type>(pointer_type_id).parent_type; }
 
-Printer::Address Printer::address_of(std::uint32_t pointer_id) {
+Address Printer::address_of(std::uint32_t pointer_id) {
   if (const auto known = addresses_.find(pointer_id); known != addresses_.end()) {
     Address address = known->second;
     if (address.varies && mode_ == Mode::lane) address.bytes = fmt::format("k::lane({}, lane)", address.bytes);
@@ -54,7 +54,7 @@ Printer::Address Printer::address_of(std::uint32_t pointer_id) {
           .size = name + "_size"};
 }
 
-Printer::Address Printer::address_in(std::uint32_t pointer_id) {
+Address Printer::address_in(std::uint32_t pointer_id) {
   const auto* phi = is_wide() ? maybe_get<SPIRVariable>(pointer_id) : nullptr;
   const std::string text = phi != nullptr ? fmt::format("v_{}", pointer_id) : to_expression(pointer_id);
   const bool differs = is_wide() && varies(pointer_id);

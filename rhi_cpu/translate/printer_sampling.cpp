@@ -38,7 +38,7 @@ bool is_projective(spv::Op op) {
 
 }  // namespace
 
-Printer::ImageOperands Printer::image_operands(const Instruction& i, std::size_t mask) const {
+ImageOperands Printer::image_operands(const Instruction& i, std::size_t mask) const {
   ImageOperands operands;
   if (i.operand_count() <= mask) return operands;
   std::uint32_t bits = i.operand(mask);

@@ -229,7 +229,8 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           // Those that write through a pointer.
           for (const std::uint32_t word : i.ids())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
-                variable != nullptr && !variable->phi_variable && variable->storage == spv::StorageClassFunction) {
+                variable != nullptr && !variable->phi_variable && is_pointer(get<Type>(variable->basetype)) &&
+                (variable->storage == spv::StorageClassFunction || variable->storage == spv::StorageClassPrivate)) {
               mark(uniformity_.varying_contents, root_variable(word));
               varies = true;
             }

@@ -169,7 +169,8 @@ void Printer::print_wide_instruction(const Instruction& i) {
   bool is_common = !i.has_result() || !varies(i.result());
   for (const std::uint32_t word : i.ids()) {
     is_common &= !varies(word);
-    if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word)))
+    // A result that depends on a variable varies already; here a literal may look like the id of one.
+    if (const auto* variable = i.has_result() ? nullptr : maybe_get<SPIRVariable>(root_variable(word)))
       is_common &= !(uniformity_.varying_contents.contains(variable->self) || variable->basetype == 0);
   }
   if (is_common) {

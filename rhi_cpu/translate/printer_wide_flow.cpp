@@ -363,13 +363,18 @@ void Printer::print_terminator(WidePrinting& printing, int block) {
   for (std::size_t k = 0; k < ways.size(); ++k) {
     const auto& [to, condition] = ways[k];
     const std::string name = fmt::format("w_{}_{}", block, k);
-    if (differs)
+    if (differs) {
       statement("const k::Mask ", name, " = ", mask, " && (", condition, ");");
-    else
-      statement("const k::Mask ", name, " = (", condition, ") ? ", mask, " : k::Mask(false);");
+    } else {
+      // What it is made of may be a phi that an edge sets.
+      statement("const bool c_", name, " = ", condition, ";");
+      statement("const k::Mask ", name, " = c_", name, " ? ", mask, " : k::Mask(false);");
+    }
   }
-  for (std::size_t k = 0; k < ways.size(); ++k)
-    print_edge(printing, block, ways[k].first, fmt::format("w_{}_{}", block, k), differs ? "" : ways[k].second);
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    const std::string name = fmt::format("w_{}_{}", block, k);
+    print_edge(printing, block, ways[k].first, name, differs ? "" : "c_" + name);
+  }
 }
 
 std::string Printer::case_text(const SPIRBlock& block, std::uint64_t number) {

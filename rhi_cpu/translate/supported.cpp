@@ -11,7 +11,7 @@
 #include "rhi/error.hpp"
 #include "rhi/spirv/names.hpp"
 #include "rhi/spirv/words.hpp"
-#include "rhi_cpu/translate/extended_instructions.hpp"
+#include "rhi_cpu/translate/instructions/extended_instructions.hpp"
 #include "rhi_cpu/translate/printer.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 

@@ -225,14 +225,16 @@ requires(is_lanes<To>) inline To convert(const Lanes<From>& from) {
     return each([](From x) { return static_cast<component_t<To>>(x); }, from);
 }
 template <typename To, typename From>
-requires(is_lanes<To>&& std::is_same_v<To, Lanes<std::int32_t>>) inline To float_to_signed(const Lanes<From>& from) {
+requires(has_registers<From>&& std::is_same_v<To, Lanes<std::int32_t>>) inline To
+    float_to_signed(const Lanes<From>& from) {
   constexpr From limit = 2147483648.0f;
   const Mask inside = from >= -limit && from < limit;
   const Lanes<From> x = kernel::select(inside, from, Lanes<From>(-limit));
   return To(__builtin_convertvector(x.of_lane, typename To::Register));
 }
 template <typename To, typename From>
-requires(is_lanes<To>&& std::is_same_v<To, Lanes<std::uint32_t>>) inline To float_to_unsigned(const Lanes<From>& from) {
+requires(has_registers<From>&& std::is_same_v<To, Lanes<std::uint32_t>>) inline To
+    float_to_unsigned(const Lanes<From>& from) {
   constexpr From limit = 4294967296.0f;
   const Mask positive = from > From{-1}, inside = from < limit;
   const Lanes<From> x = kernel::select(positive && inside, from, Lanes<From>(From{0}));

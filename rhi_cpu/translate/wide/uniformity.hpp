@@ -20,6 +20,12 @@ struct WideFunction {
   std::vector<char> branch_varies;                 ///< by block: whether lanes may leave by different edges
 };
 
+/// Where a value is defined.
+struct Definition {
+  std::uint32_t function;
+  int block;  ///< in the numbers of its flow graph
+};
+
 /// Which values may differ between the lanes that execute together. Everything else is kept once for all lanes.
 struct Uniformity {
   std::unordered_set<std::uint32_t> varying;            ///< values, and pointers to different places

@@ -129,13 +129,13 @@ TEST_CASE("Headers are precompiled for the second kernel of a cache, and made an
   CHECK(headers().empty());
   CHECK(run(5) == glow_values(5));
   REQUIRE(headers().size() == 1);
-  const fs::path header = headers()[0] / precompiled_kernel_header();
+  const fs::path header = headers()[0] / precompiled_kernel_header(native_lanes());
   const auto size = fs::file_size(header);
   fs::resize_file(header, size / 2);
   CHECK(run(6) == glow_values(6));
   CHECK(run(7) == glow_values(7));
   REQUIRE(headers().size() == 1);
-  CHECK(fs::file_size(headers()[0] / precompiled_kernel_header()) > size / 2);
+  CHECK(fs::file_size(headers()[0] / precompiled_kernel_header(native_lanes())) > size / 2);
 }
 
 TEST_CASE("A damaged kernel in the cache is compiled anew") {

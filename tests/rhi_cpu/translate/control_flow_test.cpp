@@ -164,6 +164,13 @@ TEST_CASE("parameters go in, out and both, through vectors, structs and arrays")
   CHECK(result == Ints{7, 1, 42, 3, 1002, 49, 8, 65, 11});
 }
 
+TEST_CASE("an array parameter that is stored to once, and a constant") {
+  const Ints result = evaluate<std::int32_t>(
+      "int", 2, "int list[2] = int[2](1, 2); set(list); result[0] = list[0]; result[1] = list[1];",
+      "void set(inout int list[2]) { if (list[0] == 1) list = int[2](7, 9); }");
+  CHECK(result == Ints{7, 9});
+}
+
 TEST_CASE("variables without an initialiser start as zero") {
   CHECK(evaluate<std::int32_t>("int", 3,
                                "int a; ivec3 b; float c[3]; result[0] = a; result[1] = b.y; result[2] = int(c[2]);") ==

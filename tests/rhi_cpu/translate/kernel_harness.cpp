@@ -38,9 +38,8 @@ const fs::path& kernel_headers() {
   static const ScratchFolder folder;
   static const bool written = [] {
     const fs::path headers = folder.path() / "rhi_cpu/kernel";
-    fs::create_directories(headers);
-    for (const fs::directory_entry& header : fs::directory_iterator(TANDEM_SOURCE_DIRECTORY "/rhi_cpu/kernel"))
-      fs::copy_file(header.path(), headers / header.path().filename());
+    fs::create_directories(headers.parent_path());
+    fs::copy(TANDEM_SOURCE_DIRECTORY "/rhi_cpu/kernel", headers, fs::copy_options::recursive);
     const std::string header = (headers / "kernel.hpp").string();
     const std::string command =
         compiler_command() + " -I " + folder.path().string() + " -x c++-header -o " + header + ".gch " + header;
@@ -66,8 +65,9 @@ std::vector<std::uint32_t> traced_spirv(const std::string& glsl, rhi::ShaderStag
 Kernel::Kernel(const std::string& glsl, const KernelOptions& options) : Kernel(compute_spirv(glsl), options) {}
 
 Kernel::Kernel(const std::vector<std::uint32_t>& spirv, const KernelOptions& options) {
-  const cpu::Translation translation = cpu::translate(options.optimize ? optimized(spirv) : spirv, "test.comp",
-                                                      {.specialization = options.specialization});
+  const cpu::Translation translation =
+      cpu::translate(options.optimize ? optimized(spirv) : spirv, "test.comp",
+                     {.specialization = options.specialization, .lanes = options.lanes});
   const fs::path source = folder_.path() / "kernel.cpp";
   const fs::path library = folder_.path() / "kernel.so";
   std::ofstream(source) << translation.source;

@@ -22,6 +22,7 @@ struct KernelOptions {
   std::vector<rhi::SpecializationValue> specialization;
   bool optimize = false;                  ///< run spirv-opt's performance passes on the SPIR-V first
   std::vector<std::string> more_options;  ///< of the C++ compiler
+  std::uint32_t lanes = 0;                ///< of the wide form; 0: the scalar form
 };
 
 /// GLSL compute shader to SPIR-V for Vulkan 1.2, after a #version line that every test shares.

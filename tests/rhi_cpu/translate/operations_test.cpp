@@ -13,8 +13,8 @@
 
 #include "rhi/error.hpp"
 #include "rhi/spirv/names.hpp"
-#include "rhi_cpu/translate/extended_instructions.hpp"
-#include "rhi_cpu/translate/operations.hpp"
+#include "rhi_cpu/translate/instructions/extended_instructions.hpp"
+#include "rhi_cpu/translate/instructions/operations.hpp"
 #include "rhi_cpu/translate/supported.hpp"
 #include "rhi_cpu/translate/translate.hpp"
 

@@ -86,7 +86,7 @@ bool closest(const kernel::TopLevel&, const kernel::Ray& ray, kernel::Hit& hit) 
 }
 
 TEST_CASE("a shader with all that programs for GPUs use") {
-  constexpr kernel::TraceFunctions functions = {closest, nullptr, nullptr, nullptr};
+  constexpr kernel::TraceFunctions functions = {closest, nullptr, nullptr, nullptr, nullptr, nullptr};
   constexpr kernel::Instance instance = {{}, {}, 1, 0};
   const kernel::TopLevel scene = {&functions, &instance, 1, true, false};
   for (const bool only_hits : {false, true}) {

@@ -72,7 +72,8 @@ struct ScriptedLevel : kernel::TopLevel {
     }
     return count;
   }
-  static constexpr kernel::TraceFunctions scripted_functions = {&closest, &occluded, &next_hits, nullptr};
+  static constexpr kernel::TraceFunctions scripted_functions = {&closest, &occluded, &next_hits,
+                                                                nullptr,  nullptr,   nullptr};
 };
 
 inline kernel::Hit triangle(float t, std::uint32_t primitive, bool opaque) {

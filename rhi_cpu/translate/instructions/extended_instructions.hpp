@@ -4,7 +4,7 @@
 
 #include <spirv_cross/GLSL.std.450.h>
 
-#include "rhi_cpu/translate/scalar_types.hpp"
+#include "rhi_cpu/translate/instructions/scalar_types.hpp"
 
 namespace tandem::cpu {
 

@@ -1,4 +1,4 @@
-#include "rhi_cpu/translate/scalar_types.hpp"
+#include "rhi_cpu/translate/instructions/scalar_types.hpp"
 
 #include <stdexcept>
 

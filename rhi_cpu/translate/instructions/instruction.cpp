@@ -1,4 +1,4 @@
-#include "rhi_cpu/translate/instruction.hpp"
+#include "rhi_cpu/translate/instructions/instruction.hpp"
 
 #include <utility>
 
