@@ -258,6 +258,14 @@ constexpr To convert(const From& from) {
   return each([](auto x) { return static_cast<C>(x); }, from);
 }
 
+/// An integer that a float became. With -fno-trapping-math g++ would make trunc(x), -0 of a negative fraction, of
+/// float(int(x)), which is +0.
+template <typename T>
+constexpr T integer_of(T x) {
+  if (!std::is_constant_evaluated()) asm("" : "+r"(x));
+  return x;
+}
+
 /// Truncation towards zero; the smallest integer when out of range or NaN, as x86 gives.
 template <typename To, typename From>
 constexpr To float_to_signed(const From& from) {
@@ -267,7 +275,7 @@ constexpr To float_to_signed(const From& from) {
       [](F narrow) {
         const auto x = widened(narrow);
         constexpr auto limit = static_cast<std::remove_const_t<decltype(x)>>(std::uint64_t{1} << (8 * sizeof(C) - 1));
-        return x >= -limit && x < limit ? static_cast<C>(x) : std::numeric_limits<C>::min();
+        return x >= -limit && x < limit ? integer_of(static_cast<C>(x)) : std::numeric_limits<C>::min();
       },
       from);
 }
@@ -283,7 +291,7 @@ constexpr To float_to_unsigned(const From& from) {
         using W = std::remove_const_t<decltype(x)>;
         constexpr W limit = W{2} * static_cast<W>(std::uint64_t{1} << (8 * sizeof(C) - 1));
         if (!(x > W{-1})) return C{0};
-        return x < limit ? static_cast<C>(x) : std::numeric_limits<C>::max();
+        return x < limit ? integer_of(static_cast<C>(x)) : std::numeric_limits<C>::max();
       },
       from);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 #include <spirv-tools/optimizer.hpp>
@@ -147,10 +148,23 @@ std::uint64_t inlined_size(std::span<const std::uint32_t> spirv) {
   return size_of(size_of, entry);
 }
 
+/// Whether a function's result is a pointer.
+bool returns_pointers(std::span<const std::uint32_t> spirv) {
+  std::unordered_set<std::uint32_t> pointers;
+  bool found = false;
+  for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
+    if (operation_of(i) == spv::OpTypePointer) pointers.insert(i[1]);
+    if (operation_of(i) == spv::OpFunction) found |= pointers.contains(i[1]);
+  });
+  return found;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> with_values_for_variables(std::span<const std::uint32_t> spirv, const std::string& label) {
-  const auto values_for_variables = [](spvtools::Optimizer& optimizer) {
+  // SPIRV-Tools 2023.1 takes such a function for a pointer there and crashes.
+  const bool can_remove_dead_code = !returns_pointers(spirv);
+  const auto values_for_variables = [&](spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateScalarReplacementPass(0));
     optimizer.RegisterPass(spvtools::CreateLocalAccessChainConvertPass());
     optimizer.RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass());
@@ -158,7 +172,7 @@ std::vector<std::uint32_t> with_values_for_variables(std::span<const std::uint32
     optimizer.RegisterPass(spvtools::CreateSSARewritePass());
     optimizer.RegisterPass(spvtools::CreateCCPPass());
     optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass());
-    optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(true));
+    if (can_remove_dead_code) optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(true));
   };
   std::vector<std::uint32_t> words = optimize(with_value_parameters(spirv), label, values_for_variables);
   // What is inlined has more values in place of variables, and more that all lanes have in common; too much of it takes

@@ -129,7 +129,7 @@ void Printer::find_definitions(std::uint32_t function_id) {
     for (const auto& phi : block.phi_variables) use(use, phi.local_variable, number);
     for (const auto& each : block.ops) {
       const Instruction i = view(each);
-      for (const std::uint32_t word : i.words()) use(use, word, number);
+      for (const std::uint32_t word : i.ids()) use(use, word, number);
     }
     if (block.terminator == SPIRBlock::Select || block.terminator == SPIRBlock::MultiSelect)
       use(use, block.condition, number);
@@ -151,6 +151,7 @@ void Printer::analyze_uniformity() {
   for (const std::uint32_t id : functions) find_definitions(id);
 
   ir.for_each_typed_id<SPIRVariable>([&](std::uint32_t id, SPIRVariable& variable) {
+    // Parameters that are values are variables of SPIRV-Cross too.
     if (variable.phi_variable || !is_pointer(get<Type>(variable.basetype))) return;
     if (variable.storage == spv::StorageClassPrivate) uniformity_.varying_contents.insert(id);
     if (variable.storage == spv::StorageClassInput && has_decoration(id, spv::DecorationBuiltIn) &&
@@ -190,7 +191,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
     for (const auto& each : block.ops) {
       const Instruction i = view(each);
       bool varies = false;
-      for (const std::uint32_t word : i.words()) varies |= is_varying(word);
+      for (const std::uint32_t word : i.ids()) varies |= is_varying(word);
       switch (i.op()) {
         case spv::OpLoad: {
           const std::uint32_t root = root_variable(i.operand(0));
@@ -226,7 +227,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           break;
         case spv::OpExtInst:
           // Those that write through a pointer.
-          for (const std::uint32_t word : i.words())
+          for (const std::uint32_t word : i.ids())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
                 variable != nullptr && !variable->phi_variable && is_pointer(get<Type>(variable->basetype)) &&
                 (variable->storage == spv::StorageClassFunction || variable->storage == spv::StorageClassPrivate)) {
@@ -236,7 +237,7 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           break;
         default:
           varies |= is_atomic(i.op()) || (is_subgroup_operation(i.op()) && !is_ballot_query(i.op()));
-          for (const std::uint32_t word : i.words())
+          for (const std::uint32_t word : i.ids())
             if (const auto* variable = maybe_get<SPIRVariable>(root_variable(word));
                 variable != nullptr && get<Type>(variable->basetype).basetype == SPIRType::RayQuery)
               varies = true;

@@ -69,6 +69,11 @@ std::string Printer::in_mode(std::uint32_t id, std::string text) {
 
 void Printer::define_wide(std::uint32_t type_id, std::uint32_t id, const std::string& text) {
   const std::string name = fmt::format("v_{}", id);
+  if (mode_ == Mode::lane && is_descriptor(get<Type>(type_id))) {
+    // What the text says of a lane can be said wherever the descriptor is used.
+    set<SPIRExpression>(id, fmt::format("({})", text), type_id, true);
+    return;
+  }
   if (mode_ == Mode::lane) {
     statement(narrow_name(get<Type>(type_id)), " l_", id, " = ", text, ";");
     set<SPIRExpression>(id, fmt::format("l_{}", id), type_id, true);
@@ -157,8 +162,12 @@ void Printer::print_wide_instruction(const Instruction& i) {
     default:
       break;
   }
+  if (i.has_result() && varies(i.result()) && is_descriptor(get<Type>(i.result_type()))) {
+    const Restored mode(mode_, Mode::lane);
+    return print_instruction(i);
+  }
   bool is_common = !i.has_result() || !varies(i.result());
-  for (const std::uint32_t word : i.words()) {
+  for (const std::uint32_t word : i.ids()) {
     is_common &= !varies(word);
     // A result that depends on a variable varies already; here a literal may look like the id of one.
     if (const auto* variable = i.has_result() ? nullptr : maybe_get<SPIRVariable>(root_variable(word)))
@@ -176,8 +185,9 @@ void Printer::print_wide_instruction(const Instruction& i) {
 }
 
 void Printer::print_by_lane(const Instruction& i, const std::function<void()>& print) {
-  const bool has_value = i.has_result() && get<Type>(i.result_type()).basetype != SPIRType::Void &&
-                         !is_pointer(get<Type>(i.result_type()));
+  const Type* type = i.has_result() ? &get<Type>(i.result_type()) : nullptr;
+  const bool has_value =
+      type != nullptr && type->basetype != SPIRType::Void && (!is_pointer(*type) || is_buffer(type->storage));
   const std::string name = has_value ? fmt::format("v_{}", i.result()) : "";
   if (has_value && !escapes_.contains(i.result()))
     statement("k::wide_t<", narrow_name(get<Type>(i.result_type())), "> ", name, ";");

@@ -245,7 +245,7 @@ inline T lane(const Lanes<T>& wide, int lane) {
 }
 template <typename T>
 inline void set_lane(Lanes<T>& wide, int lane, const T& value) {
-  if constexpr (has_registers<T> || std::is_same_v<T, bool>)
+  if constexpr (requires { wide.set(lane, value); })
     wide.set(lane, value);
   else
     wide[lane] = value;
@@ -314,6 +314,8 @@ inline Lanes<T> select(Mask mask, const Lanes<T>& if_true, const Lanes<T>& if_fa
       return Lanes<T>(__builtin_convertvector(mask.of_lane, mask_registers<T>) ? if_true.of_lane : if_false.of_lane);
   } else if constexpr (std::is_same_v<T, bool>) {
     return Mask(mask.of_lane ? if_true.of_lane : if_false.of_lane);
+  } else if constexpr (requires { typename Lanes<T>::Words; }) {
+    return Lanes<T>(kernel::select(mask, if_true.words, if_false.words));
   } else {
     Lanes<T> result;
     for (int i = 0; i < lane_count; ++i) result[i] = mask[i] ? if_true[i] : if_false[i];

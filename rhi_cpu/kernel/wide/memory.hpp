@@ -8,27 +8,29 @@
 /// Loads of buffers by all lanes at once.
 namespace tandem::kernel {
 
-/// An address per lane. Those of lanes that do not execute lead nowhere.
+/// An address per lane, the twin of a pointer. Those of lanes that do not execute lead nowhere.
 struct Addresses {
+  using Narrow = std::byte*;
   Lanes<std::uint64_t> of_lane;
 
   Addresses() = default;
+  Addresses(const std::byte* all) : of_lane(reinterpret_cast<std::uint64_t>(all)) {}
   explicit Addresses(Lanes<std::uint64_t> addresses) : of_lane(addresses) {}
   friend Addresses operator+(const Addresses& a, Lanes<std::uint64_t> distance) {
     return Addresses(a.of_lane + distance);
   }
+  std::byte* lane(int lane) const { return reinterpret_cast<std::byte*>(of_lane[lane]); }
+  void set_lane(int lane, std::byte* address) { of_lane.set(lane, reinterpret_cast<std::uint64_t>(address)); }
+  static Addresses select(Mask mask, const Addresses& if_true, const Addresses& if_false) {
+    return Addresses(kernel::select(mask, if_true.of_lane, if_false.of_lane));
+  }
+};
+template <>
+struct WideOf<std::byte*> {
+  using type = Addresses;
 };
 inline Addresses operator+(const std::byte* base, const Lanes<std::uint64_t>& distance) {
   return Addresses(Lanes<std::uint64_t>(reinterpret_cast<std::uint64_t>(base)) + distance);
-}
-
-inline std::byte* lane(const Addresses& addresses, int lane) {
-  return reinterpret_cast<std::byte*>(addresses.of_lane[lane]);
-}
-
-/// place = value in the lanes of the mask.
-inline void assign(Mask mask, Addresses& place, const Addresses& value) {
-  place.of_lane = kernel::select(mask, value.of_lane, place.of_lane);
 }
 
 /// Addresses that all lanes may read: where the mask has none, one of another lane.

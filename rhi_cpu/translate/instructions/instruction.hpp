@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <spirv_cross/spirv.hpp>
 
@@ -26,6 +27,9 @@ class Instruction {
   std::size_t operand_count() const { return operands_.size(); }
   /// All that follow the opcode.
   std::span<const std::uint32_t> words() const { return words_; }
+  /// Those of `words` that are ids, and literals that no id of a value can be taken for: the indices of composites, the
+  /// numbers of extended instructions and the masks of image operands are left out.
+  std::vector<std::uint32_t> ids() const;
 
  private:
   spv::Op op_;
