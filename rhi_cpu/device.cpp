@@ -222,7 +222,9 @@ DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKer
               {.robust = desc.robust_access,
                .watched = desc.time_limit.count() > 0,
                .subgroup_size = info.limits.subgroup_size,
-               .lanes = desc.name == scalar_name ? 1 : desc.name == wide_name ? native_lanes() : desc.lanes},
+               .lanes = desc.name == scalar_name ? 1
+                        : desc.name == wide_name ? native_lanes()
+                                                 : desc.lanes},
               desc.kernel_cache, desc.on_message) {}
 
 std::span<const std::string_view> device_names() {

@@ -64,59 +64,6 @@ struct Lanes {
   }
   T& operator[](int lane) { return of_lane[lane]; }
   const T& operator[](int lane) const { return of_lane[lane]; }
-
-  // Of numbers, which halves are.
-  friend Lanes operator+(const Lanes& a, const Lanes& b) {
-    return of([](const T& x, const T& y) { return x + y; }, a, b);
-  }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) {
-    return of([](const T& x, const T& y) { return x - y; }, a, b);
-  }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) {
-    return of([](const T& x, const T& y) { return x * y; }, a, b);
-  }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) {
-    return of([](const T& x, const T& y) { return x / y; }, a, b);
-  }
-  friend Lanes operator-(const Lanes& a) {
-    return of([](const T& x, const T&) { return -x; }, a, a);
-  }
-  Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
-  Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
-  Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
-  Lanes& operator/=(const Lanes& b) { return *this = *this / b; }
-  friend auto operator==(const Lanes& a, const Lanes& b) {
-    return test([](const T& x, const T& y) { return x == y; }, a, b);
-  }
-  friend auto operator!=(const Lanes& a, const Lanes& b) {
-    return test([](const T& x, const T& y) { return x != y; }, a, b);
-  }
-  friend auto operator<(const Lanes& a, const Lanes& b) {
-    return test([](const T& x, const T& y) { return x < y; }, a, b);
-  }
-  friend auto operator<=(const Lanes& a, const Lanes& b) {
-    return test([](const T& x, const T& y) { return x <= y; }, a, b);
-  }
-  friend auto operator>(const Lanes& a, const Lanes& b) {
-    return test([](const T& x, const T& y) { return x > y; }, a, b);
-  }
-  friend auto operator>=(const Lanes& a, const Lanes& b) {
-    return test([](const T& x, const T& y) { return x >= y; }, a, b);
-  }
-
- private:
-  template <typename Function>
-  static Lanes of(const Function& function, const Lanes& a, const Lanes& b) {
-    Lanes result;
-    for (int i = 0; i < lane_count; ++i) result[i] = static_cast<T>(function(a[i], b[i]));
-    return result;
-  }
-  template <typename Function>
-  static auto test(const Function& function, const Lanes& a, const Lanes& b) {
-    Lanes<decltype(function(a[0], b[0]))> result;
-    for (int i = 0; i < lane_count; ++i) result.set(i, function(a[i], b[i]));
-    return result;
-  }
 };
 
 /// A bool per lane; also the mask of the lanes that execute.
