@@ -10,8 +10,9 @@
 namespace tandem::tools {
 
 std::string table(const KernelReport& report) {
-  std::string text = fmt::format("{} kernels: {} rounds after one to warm up\n\n", report.kernels.size(),
-                                 report.kernels.front().series.front().milliseconds.size());
+  std::string text =
+      fmt::format("{} kernel{}: {} rounds after one to warm up\n\n", report.kernels.size(),
+                  report.kernels.size() == 1 ? "" : "s", report.kernels.front().series.front().milliseconds.size());
   const auto row = [&](const auto&... cells) {
     fmt::format_to(std::back_inserter(text), "{:<20}{:<12}{:<30}{}\n", cells...);
   };
