@@ -15,7 +15,7 @@ using Action = std::function<int()>;
 namespace exit_code {
 inline constexpr int success = 0;
 inline constexpr int differ = 1;  ///< the images differ (diff, matrix, gallery, suite); a mismatch (explain)
-inline constexpr int failed = 1;  ///< `tandem conformance`: a device does not do what it must
+inline constexpr int failed = 1;  ///< `tandem conformance`, `bench --kernels`: a device is wrong
 inline constexpr int error = 2;
 inline constexpr int explained = 3;  ///< the images differ, but for reasons that the scene owns (diff, gallery, suite)
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C

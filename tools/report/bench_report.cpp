@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <iterator>
 
 #include "tools/report/device_json.hpp"
@@ -17,18 +16,6 @@ double camera_paths(const compare::JobSummary& job) {
   return static_cast<double>(job.settings.width) * job.settings.height * job.samples;
 }
 
-/// How many times as fast as the first device, round by round: what slows the machine for a while slows both.
-Spread speed_ratio(const BenchSeries& first, const BenchSeries& series) {
-  std::vector<double> ratios(series.milliseconds.size());
-  std::transform(first.milliseconds.begin(), first.milliseconds.end(), series.milliseconds.begin(), ratios.begin(),
-                 [](double milliseconds_first, double milliseconds) { return milliseconds_first / milliseconds; });
-  return spread(std::move(ratios));
-}
-
-nlohmann::ordered_json spread_json(const Spread& values) {
-  return {{"median", values.median}, {"min", values.least}, {"max", values.most}};
-}
-
 }  // namespace
 
 std::string table(const BenchReport& report) {
@@ -40,7 +27,7 @@ std::string table(const BenchReport& report) {
   row("device", "ms (min, max)", "Mrays/s", "Msamples/s", "times the first device's speed (min, max)");
   for (const BenchSeries& series : report.series) {
     const Spread times = spread(series.milliseconds);
-    const Spread ratio = speed_ratio(report.series.front(), series);
+    const Spread ratio = speed_ratio(report.series.front().milliseconds, series.milliseconds);
     row(series.device.name, fmt::format("{:.1f} ({:.1f}, {:.1f})", times.median, times.least, times.most),
         fmt::format("{:.3f}", per_second_in_millions(static_cast<double>(series.rays), times.median)),
         fmt::format("{:.3f}", per_second_in_millions(camera_paths(report.job), times.median)),
@@ -64,14 +51,14 @@ nlohmann::ordered_json to_json(const BenchReport& report) {
     const Spread times = spread(series.milliseconds);
     nlohmann::ordered_json entry = to_json(series.device);
     entry["trace"] = pathtracer::name(series.trace);
-    entry["ms"] = spread_json(times);
+    entry["ms"] = to_json(times);
     entry["ms_rounds"] = series.milliseconds;
     entry["build_ms"] = series.build_milliseconds;
     entry["compile_ms"] = series.compile_milliseconds;
     entry["rays"] = series.rays;
     entry["mrays"] = per_second_in_millions(static_cast<double>(series.rays), times.median);
     entry["msamples"] = per_second_in_millions(camera_paths(report.job), times.median);
-    entry["speed_ratio"] = spread_json(speed_ratio(report.series.front(), series));
+    entry["speed_ratio"] = to_json(speed_ratio(report.series.front().milliseconds, series.milliseconds));
     json["devices"].push_back(std::move(entry));
   }
   json["format"] = json_format;
