@@ -14,8 +14,8 @@ namespace tandem::cpu {
 /// "cpu" and "cpu-exact".
 std::span<const std::string_view> device_names();
 
-/// Those, "cpu-scalar", which is "cpu" with DeviceDesc::lanes 1, and "cpu-wide", with as many lanes as the processor's
-/// registers have.
+/// Those, "cpu-scalar", which is "cpu" with DeviceDesc::lanes 1, and "cpu-wide", which runs all compute
+/// shaders in lanes.
 bool is_device_name(std::string_view name);
 
 /// @param name one of device_names()

@@ -119,10 +119,9 @@ std::string processor_identity() {
 }
 
 std::uint32_t native_lanes() {
+  // Not 16 with AVX-512: addresses have 64 bits, and compilers take vectors apart that are longer than a register.
 #if defined(__x86_64__)
-  return __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0 ? 16
-         : __builtin_cpu_supports("avx2") != 0                                              ? 8
-                                                                                            : 4;
+  return __builtin_cpu_supports("avx2") != 0 ? 8 : 4;
 #else
   return 4;
 #endif

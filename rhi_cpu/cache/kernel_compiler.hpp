@@ -20,7 +20,7 @@ KernelCompiler find_kernel_compiler(const std::string& label);
 /// The processor's model and features, which the code made for it depends on.
 std::string processor_identity();
 
-/// The lanes of a 32-bit number that fill the processor's widest registers: 4, 8 or 16.
+/// How many lanes of a kernel are the fastest on this processor: 4 or 8.
 std::uint32_t native_lanes();
 
 /// The processor's name for people, "" when the system does not say.

@@ -88,7 +88,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   // printer_types.cpp: names of types, structs, constants.
   std::string type_name(std::uint32_t type_id) { return type_name(get<Type>(type_id)); }
   std::string type_name(const Type& type);
-  /// The type of one lane's value.
   std::string narrow_name(const Type& type);
   std::string numbers_name(BaseType base, std::uint32_t length) const;
   std::string struct_name(const Type& type);
@@ -116,8 +115,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_access_chain(const Instruction& i);
   void chain_in_buffer(const Instruction& i, Address address, std::size_t first_index);
   void chain_in_variable(const Instruction& i);
-  /// The kernel::Resource that the operands from `k` on name, in an array of descriptors of type `type_id`; both are
-  /// moved behind it.
+  /// The kernel::Resource that the operands from `k` on name in an array of descriptors; moves both arguments behind
+  /// it.
   std::string descriptor_element(const Instruction& i, std::size_t& k, std::uint32_t& type_id);
   void index_address(Address& address, std::uint32_t index_id, std::uint32_t stride);
   std::string load_text(std::uint32_t type_id, const Address& address);
@@ -281,6 +280,9 @@ class Printer : public spirv_cross::CompilerGLSL {
   void keep_addresses(std::uint32_t id, Address& address);
   void print_wide_load(const Instruction& i);
   void print_wide_store(const Instruction& i);
+  bool has_register(const Type& type) const;
+  std::string bounds(const Address& address) const;
+  void print_store_in_rows(const Instruction& i);
   void print_wide_call(const Instruction& i);
 
   // printer_wide_flow.cpp: control flow in the wide form.
@@ -323,7 +325,6 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string lookup(const Instruction& i, std::size_t mask);
   /// What a shader reads of a texel's components.
   std::string texel_component(const Type& image) const;
-  /// Whether a type has a sampler in it, which a texel buffer that calls itself a sampler has not.
   bool is_combined(const Type& type) const;
   void print_sampled_image(const Instruction& i);
   void print_image_of(const Instruction& i);

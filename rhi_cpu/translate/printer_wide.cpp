@@ -258,8 +258,19 @@ void Printer::print_wide_load(const Instruction& i) {
       text = guarded_load(i.result_type(), address);
     }
     const Restored mode(mode_, Mode::wide);
-    return define(i, fmt::format("k::gather(k::readable({}, {}), [&](const std::byte* at) {{ return {}; }})", mask_,
-                                 addresses, text));
+    const std::string read = fmt::format("[&](const std::byte* at) {{ return {}; }}", text);
+    if (!has_register(type))
+      return define(i, fmt::format("k::gather(k::readable({}, {}), {})", mask_, addresses, read));
+    // The lambda has the offset.
+    address.bytes = addresses;
+    const std::string first = printed(address);
+    if (address.offset != 0)
+      return define(i,
+                    fmt::format("k::gather_numbers<{}>({}, k::Addresses({}), {}, [&](const std::byte* from) {{ const "
+                                "std::byte* at = from - {}; return {}; }})",
+                                narrow_name(type), mask_, first, bounds(address), address.offset, text));
+    return define(i, fmt::format("k::gather_numbers<{}>({}, {}, {}, {})", narrow_name(type), mask_, first,
+                                 bounds(address), read));
   }
   if (is_descriptor(type) || type_is_opaque_value(type)) {
     const Restored mode(mode_, varies(pointer) ? Mode::lane : Mode::common);
@@ -280,10 +291,30 @@ void Printer::print_wide_load(const Instruction& i) {
   define(i, place_at(pointer));
 }
 
+bool Printer::has_register(const Type& type) const {
+  return !is_array(type) && !is_pointer(type) && type.vecsize == 1 && type.columns == 1 &&
+         (is_integer(type.basetype) || type.basetype == SPIRType::Float || type.basetype == SPIRType::Double);
+}
+
+std::string Printer::bounds(const Address& address) const {
+  return is_guarded(address) ? fmt::format("k::Bounds{{{}, {}}}", address.data, address.size) : "k::Bounds{}";
+}
+
+void Printer::print_store_in_rows(const Instruction& i) {
+  const std::uint32_t pointer = i.operand(0);
+  const Type& type = type_of(i.operand(1));
+  const Address address = address_of(pointer);
+  if (address.by_lane || !has_register(type)) return;
+  const Restored mode(mode_, Mode::wide);
+  statement("if (!k::stored_in_rows<", narrow_name(type), ">(", mask_, ", k::Addresses(", printed(address), "), ",
+            bounds(address), ", ", value(i.operand(1)), "))");
+}
+
 void Printer::print_wide_store(const Instruction& i) {
   const std::uint32_t pointer = i.operand(0), stored = i.operand(1);
   const bool differs = varies(pointer) || varies(stored);
   if (is_buffer_pointer(pointer)) {
+    if (varies(pointer)) print_store_in_rows(i);
     if (differs) return print_by_lane(i, [&] { print_store(i); });
     const Restored mode(mode_, Mode::common);
     return print_store(i);

@@ -49,12 +49,58 @@ inline auto gather(const Addresses& addresses, const Read& read) {
   return result;
 }
 
-/// lane_count values of any kind, one after the other.
-template <typename T>
-struct PerLane {
-  T of_lane[lane_count];
-  T& operator[](int lane) { return of_lane[lane]; }
+/// Memory that addresses must stay inside of; without `data`, any.
+struct Bounds {
+  const std::byte* data = nullptr;
+  std::size_t size = 0;
+
+  bool contain(const std::byte* first, std::size_t extent) const {
+    const auto offset = static_cast<std::size_t>(first - data);
+    return data == nullptr || (size >= extent && offset <= size - extent);
+  }
 };
+
+/// Lanes whose numbers are looked at together: a row of a workgroup of 8 times 8 is half of 16 lanes.
+inline constexpr int row_length = lane_count < 8 ? lane_count : 8;
+
+/// Whether all lanes execute, and the numbers of each row of lanes lie one after the other.
+template <typename T>
+inline bool are_in_rows(Mask mask, const Addresses& addresses, const Bounds& bounds) {
+  Lanes<std::uint64_t> expected;
+  for (int i = 0; i < lane_count; ++i)
+    expected.set(
+        i, addresses.of_lane[i / row_length * row_length] + static_cast<std::uint64_t>(i % row_length) * sizeof(T));
+  if (bits_of(mask && addresses.of_lane == expected) != all_bits) return false;
+  bool are_inside = true;
+  for (int row = 0; row < lane_count; row += row_length)
+    are_inside &= bounds.contain(addresses.lane(row), row_length * sizeof(T));
+  return are_inside;
+}
+
+/// The numbers at the addresses, as `gather` gives them: at once where they are neighbours, as those of neighbouring
+/// invocations often are, or one and the same.
+template <typename T, typename Read>
+inline Lanes<T> gather_numbers(Mask mask, const Addresses& addresses, const Bounds& bounds, const Read& read) {
+  if (are_in_rows<T>(mask, addresses, bounds)) {
+    Lanes<T> result;
+    for (int row = 0; row < lane_count; row += row_length)
+      std::memcpy(reinterpret_cast<T*>(&result.of_lane) + row, addresses.lane(row), row_length * sizeof(T));
+    return result;
+  }
+  const Addresses safe = readable(mask, addresses);
+  if (bits_of(safe.of_lane == Lanes<std::uint64_t>(safe.of_lane[0])) == all_bits)
+    return Lanes<T>(read(static_cast<const std::byte*>(safe.lane(0))));
+  return gather(safe, read);
+}
+
+/// Stores the numbers if they are neighbours. @return whether it has
+template <typename T>
+inline bool stored_in_rows(Mask mask, const Addresses& addresses, const Bounds& bounds, const Lanes<T>& value) {
+  if (!are_in_rows<T>(mask, addresses, bounds)) return false;
+  for (int row = 0; row < lane_count; row += row_length)
+    std::memcpy(addresses.lane(row), reinterpret_cast<const T*>(&value.of_lane) + row, row_length * sizeof(T));
+  return true;
+}
 
 /// The lanes of a mask, in order, for a loop.
 class EachLane {
