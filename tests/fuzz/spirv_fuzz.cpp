@@ -89,8 +89,10 @@ void main() {
 /// What became of a mutant: the error's code and the kind of sentence, for the counts.
 std::string outcome(const Words& words) {
   try {
-    rhi::reflect(words, "mutant");
+    const rhi::ShaderReflection reflection = rhi::reflect(words, "mutant");
     cpu::translate(words, "mutant", {.robust = true, .watched = true});
+    if (reflection.stage == rhi::ShaderStage::compute)
+      cpu::translate(words, "mutant", {.robust = true, .watched = true, .lanes = 8});
     return "translated";
   } catch (const rhi::Error& error) {
     const std::string text = error.what();
