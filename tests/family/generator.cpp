@@ -74,7 +74,7 @@ layout(binding = 4) uniform Uniforms {{ uvec4 u[4]; vec4 f[4]; mat4 m; ivec2 i; 
 layout(push_constant) uniform Constants {{ uint n; int i; float f; uint m; vec4 v; }} pc;
 )",
                       input_words, has_small_ ? "u16vec4" : "uvec2");
-  if (features_.barriers) text += fmt::format("shared uint common[{}];\n", size_[0] * size_[1] * size_[2]);
+  if (features_.barriers) text += fmt::format("shared uint exchanged[{}];\n", size_[0] * size_[1] * size_[2]);
   for (std::size_t i = 0; i < structs_.size(); ++i) {
     text += fmt::format("struct S{} {{ ", i);
     for (std::size_t k = 0; k < structs_[i].members.size(); ++k)

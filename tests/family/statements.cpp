@@ -226,11 +226,11 @@ Statement Generator::exchange() {
   const std::uint32_t size = size_[0] * size_[1] * size_[2];
   Expression value = expression({Scalar::u32}, 2);
   if (features_.barriers && (!features_.subgroups || choices_.chance(50)))
-    return {
-        fmt::format("common[gl_LocalInvocationIndex] = $0; barrier(); h += common[(gl_LocalInvocationIndex + {}u) % "
-                    "{}u]; barrier();",
-                    choices_.below(9), size),
-        {std::move(value)}};
+    return {fmt::format(
+                "exchanged[gl_LocalInvocationIndex] = $0; barrier(); h += exchanged[(gl_LocalInvocationIndex + {}u) % "
+                "{}u]; barrier();",
+                choices_.below(9), size),
+            {std::move(value)}};
   return {fmt::format("h += {};", choices_.of({"subgroupClusteredAdd($0, 4u)", "subgroupClusteredXor($0, 4u)",
                                                "subgroupClusteredMin($0, 4u)", "subgroupQuadSwapHorizontal($0)",
                                                "subgroupQuadBroadcast($0, 2u)", "subgroupShuffleXor($0, 3u)",
