@@ -343,20 +343,24 @@ std::vector<std::string> unsupported_features(std::span<const std::uint32_t> spi
   return checker.unsupported();
 }
 
-bool declares_subgroups(std::span<const std::uint32_t> spirv) {
+namespace {
+
+template <typename Is>
+bool declares(std::span<const std::uint32_t> spirv, const Is& is) {
   bool found = false;
-  rhi::for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    found |= rhi::operation_of(i) == spv::OpCapability && contains(compute_capabilities, i[1]);
-  });
+  rhi::for_each_instruction(
+      spirv, [&](std::span<const std::uint32_t> i) { found |= rhi::operation_of(i) == spv::OpCapability && is(i[1]); });
   return found;
 }
 
+}  // namespace
+
+bool declares_subgroups(std::span<const std::uint32_t> spirv) {
+  return declares(spirv, [](std::uint32_t capability) { return contains(compute_capabilities, capability); });
+}
+
 bool declares_ray_queries(std::span<const std::uint32_t> spirv) {
-  bool found = false;
-  rhi::for_each_instruction(spirv, [&](std::span<const std::uint32_t> i) {
-    found |= rhi::operation_of(i) == spv::OpCapability && i[1] == spv::CapabilityRayQueryKHR;
-  });
-  return found;
+  return declares(spirv, [](std::uint32_t capability) { return capability == spv::CapabilityRayQueryKHR; });
 }
 
 void check_supported(std::span<const std::uint32_t> spirv, const std::string& label) {
