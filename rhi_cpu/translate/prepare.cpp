@@ -16,6 +16,7 @@
 #include "rhi_cpu/translate/folding/constant_folding.hpp"
 #include "rhi_cpu/translate/refusal.hpp"
 #include "rhi_cpu/translate/supported.hpp"
+#include "rhi_cpu/translate/wide/plain_copies.hpp"
 #include "rhi_cpu/translate/wide/value_parameters.hpp"
 
 namespace tandem::cpu {
@@ -148,6 +149,15 @@ std::uint64_t inlined_size(std::span<const std::uint32_t> spirv) {
   return size_of(size_of, entry);
 }
 
+/// Of a module that asks for signed zeros, infinities and NaN spirv-opt leaves floats alone; of another one it makes 0
+/// of 0 * x.
+std::vector<std::uint32_t> without_float_folding(std::span<const std::uint32_t> spirv) {
+  std::vector<std::uint32_t> words(spirv.begin(), spirv.end());
+  words.insert(words.begin() + rhi::spirv_header_words,
+               {2u << 16 | spv::OpCapability, spv::CapabilitySignedZeroInfNanPreserve});
+  return words;
+}
+
 /// Whether a function's result is a pointer.
 bool returns_pointers(std::span<const std::uint32_t> spirv) {
   std::unordered_set<std::uint32_t> pointers;
@@ -174,7 +184,8 @@ std::vector<std::uint32_t> with_values_for_variables(std::span<const std::uint32
     optimizer.RegisterPass(spvtools::CreateDeadBranchElimPass());
     if (can_remove_dead_code) optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass(true));
   };
-  std::vector<std::uint32_t> words = optimize(with_value_parameters(spirv), label, values_for_variables);
+  std::vector<std::uint32_t> words =
+      optimize(with_value_parameters(with_plain_copies(without_float_folding(spirv))), label, values_for_variables);
   // What is inlined has more values in place of variables, and more that all lanes have in common; too much of it takes
   // the C++ compiler minutes.
   constexpr std::uint64_t inlining_limit = 4000;

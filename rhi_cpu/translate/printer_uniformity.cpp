@@ -198,11 +198,9 @@ bool Printer::update_uniformity(std::uint32_t function_id) {
           varies |= uniformity_.varying_contents.contains(root);
           break;
         }
-        case spv::OpStore:
-        case spv::OpCopyMemory: {
+        case spv::OpStore: {
           const std::uint32_t root = root_variable(i.operand(0));
           const auto* variable = maybe_get<SPIRVariable>(root);
-          if (i.op() == spv::OpCopyMemory) varies |= uniformity_.varying_contents.contains(root_variable(i.operand(1)));
           if (variable != nullptr && variable->storage == spv::StorageClassFunction && !variable->phi_variable &&
               (varies || function.is_divergent[at(number)]))
             mark(uniformity_.varying_contents, root);

@@ -28,7 +28,7 @@ bool is_narrow_function(std::string_view name) {
   return std::find(std::begin(narrow_functions), std::end(narrow_functions), name) != std::end(narrow_functions);
 }
 
-/// How deep a value is printed in a form of its own.
+/// Sets a variable, until the end of its own scope.
 template <typename T>
 class Restored {
  public:
@@ -58,11 +58,8 @@ std::string Printer::numbers_name(BaseType base, std::uint32_t length) const {
 std::string Printer::in_mode(std::uint32_t id, std::string text) {
   if (mode_ == Mode::common) return text;
   const Type& type = type_of(id);
-  const bool is_buffer_place = is_buffer_pointer(id);
-  if (is_pointer(type) && !is_buffer_place) {
-    return text;
-  }
-  if (is_descriptor(type)) return text;
+  const bool is_place = is_pointer(type) && !is_buffer_pointer(id);
+  if (is_place || is_descriptor(type)) return text;
   if (mode_ == Mode::wide) return varies(id) ? text : fmt::format("k::spread({})", text);
   return varies(id) && id != lane_result_ ? fmt::format("k::lane({}, lane)", text) : text;
 }
@@ -113,6 +110,7 @@ bool Printer::is_wide_operation(const Instruction& i) {
     case spv::OpCompositeInsert:
     case spv::OpVectorShuffle:
     case spv::OpCopyObject:
+    case spv::OpExpectKHR:
       return true;
     case spv::OpBitcast: {
       const Type &to = get<Type>(i.result_type()), &from = type_of(i.operand(0));
@@ -141,10 +139,8 @@ void Printer::print_wide_instruction(const Instruction& i) {
     case spv::OpNop:
     case spv::OpNoLine:
     case spv::OpLine:
-    case spv::OpExpectKHR:
     case spv::OpAssumeTrueKHR:
-      if (i.op() != spv::OpExpectKHR) return;
-      break;
+      return;
     case spv::OpAccessChain:
     case spv::OpInBoundsAccessChain:
       return print_wide_chain(i);
@@ -171,7 +167,7 @@ void Printer::print_wide_instruction(const Instruction& i) {
     is_common &= !varies(word);
     // A result that depends on a variable varies already; here a literal may look like the id of one.
     if (const auto* variable = i.has_result() ? nullptr : maybe_get<SPIRVariable>(root_variable(word)))
-      is_common &= !(uniformity_.varying_contents.contains(variable->self) || variable->basetype == 0);
+      is_common &= !uniformity_.varying_contents.contains(variable->self);
   }
   if (is_common) {
     const Restored mode(mode_, Mode::common);

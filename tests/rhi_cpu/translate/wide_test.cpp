@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "tests/rhi_cpu/translate/assembly.hpp"
 #include "tests/rhi_cpu/translate/kernel_harness.hpp"
 
 namespace {
@@ -68,4 +69,82 @@ TEST_CASE("in lanes: what a function writes through a pointer beside its result"
   own[id] += uint(modf(y, whole) * 8.0) * 10000u + uint(whole);
   own[id] += uint(modf(x, whole) * 8.0) * 1000000u + uint(whole);)",
               "float all = 0.0;");
+}
+
+TEST_CASE("in lanes: a product with a constant zero has its factor's sign, or is NaN") {
+  // spirv-opt may make 0 of it, which is not for the translator to do.
+  const std::string statements = R"(
+  float factor = uintBitsToFloat(id % 3u == 0u ? 0xbf800000u : id % 3u == 1u ? 0x7f800000u : 0x3f800000u);
+  vec3 product = vec3(0.0) * factor;
+  vec2 column = mat2(0.0) * vec2(factor);
+  own[id] = (isnan(product.y) ? 1u : floatBitsToUint(product.y) >> 30) +
+            10u * (isnan(column.x) ? 1u : floatBitsToUint(column.x) >> 30) +
+            100u * uint(isnan(dot(vec2(0.0), vec2(factor))));)";
+  CHECK(written(statements, "", 8) == written(statements, "", 0));
+}
+
+TEST_CASE("in lanes: memory that is copied, from a buffer to a variable and on to another one, by some of the lanes") {
+  const std::string module = R"(
+               OpCapability Shader
+               OpMemoryModel Logical GLSL450
+               OpEntryPoint GLCompute %main "main" %invocation
+               OpExecutionMode %main LocalSize 7 1 1
+               OpDecorate %invocation BuiltIn GlobalInvocationId
+               OpDecorate %array ArrayStride 4
+               OpDecorate %block BufferBlock
+               OpMemberDecorate %block 0 Offset 0
+               OpDecorate %own DescriptorSet 0
+               OpDecorate %own Binding 0
+               OpDecorate %data DescriptorSet 0
+               OpDecorate %data Binding 1
+       %void = OpTypeVoid
+   %function = OpTypeFunction %void
+       %bool = OpTypeBool
+       %uint = OpTypeInt 32 0
+      %uint3 = OpTypeVector %uint 3
+      %input = OpTypePointer Input %uint3
+ %invocation = OpVariable %input Input
+      %array = OpTypeRuntimeArray %uint
+      %block = OpTypeStruct %array
+ %block_pointer = OpTypePointer Uniform %block
+  %word_pointer = OpTypePointer Uniform %uint
+ %local_pointer = OpTypePointer Function %uint
+        %own = OpVariable %block_pointer Uniform
+       %data = OpVariable %block_pointer Uniform
+       %zero = OpConstant %uint 0
+        %one = OpConstant %uint 1
+      %seven = OpConstant %uint 7
+       %main = OpFunction %void None %function
+      %begin = OpLabel
+      %first = OpVariable %local_pointer Function
+     %second = OpVariable %local_pointer Function
+        %ids = OpLoad %uint3 %invocation
+         %id = OpCompositeExtract %uint %ids 0
+               OpStore %second %seven
+        %odd = OpBitwiseAnd %uint %id %one
+     %is_odd = OpINotEqual %bool %odd %zero
+     %source = OpAccessChain %word_pointer %data %zero %id
+     %target = OpAccessChain %word_pointer %own %zero %id
+               OpSelectionMerge %after None
+               OpBranchConditional %is_odd %copies %after
+     %copies = OpLabel
+               OpCopyMemory %first %source
+               OpCopyMemory %second %first
+               OpBranch %after
+      %after = OpLabel
+               OpCopyMemory %target %second
+               OpReturn
+               OpFunctionEnd
+)";
+  const std::vector<std::uint32_t> spirv = tandem::test::assembled(module, SPV_ENV_UNIVERSAL_1_3);
+  Words data(64), expected(invocation_count);
+  for (std::uint32_t i = 0; i < data.size(); ++i) data[i] = 100 + i;
+  for (std::uint32_t i = 0; i < invocation_count; ++i) expected[i] = i % 2 != 0 ? data[i] : 7;
+  for (const std::uint32_t lanes : {0u, 4u, 8u}) {
+    CAPTURE(lanes);
+    Words own(invocation_count);
+    Kernel(spirv, {.specialization = {}, .optimize = false, .more_options = {}, .lanes = lanes})
+        .run({resource(own), resource(data)}, {3});
+    CHECK(own == expected);
+  }
 }
