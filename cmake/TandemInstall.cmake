@@ -33,7 +33,7 @@ endforeach()
 install(TARGETS ${tandem_installed_libraries} EXPORT TandemTargets ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
 install(EXPORT TandemTargets NAMESPACE Tandem:: DESTINATION "${TANDEM_INSTALL_PACKAGE}")
 
-foreach(folder base rhi devices pathtracer compare conformance rhi_cpu/kernel)
+foreach(folder base rhi devices pathtracer compare conformance program rhi_cpu/kernel)
   cmake_path(GET folder PARENT_PATH parent)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}" DESTINATION "${TANDEM_INSTALL_HEADERS}/${parent}"
           FILES_MATCHING PATTERN "*.hpp")

@@ -29,6 +29,8 @@ class Execution {
   void run(const Command& command);
   /// Runs all commands of the job.
   void run();
+  /// Runs them in one submission. Returns the milliseconds that the device needed, by its own clock where it has one.
+  double timed_run();
 
   /// The bytes that a buffer has now. @param index in Job::buffers
   std::vector<std::byte> buffer(std::size_t index);

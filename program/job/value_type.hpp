@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -69,6 +70,7 @@ struct Place {
 std::string describe(const ValueType& type);
 
 /// How many scalars `bytes` bytes of the type hold, whole elements of unsized arrays counted.
+/// @pre bytes >= type.size
 std::uint64_t scalar_count(const ValueType& type, std::uint64_t bytes);
 
 /// The scalar number `index`, in the order of declaration, elements and components. @pre index < scalar_count()
@@ -76,5 +78,10 @@ Place place_of(const ValueType& type, std::uint64_t bytes, std::uint64_t index);
 
 /// What the scalar number `index` is called from the value on: "position[3].y", "[7]", "matrix[2][1]"; "" for a scalar.
 std::string path_of(const ValueType& type, std::uint64_t bytes, std::uint64_t index);
+
+/// All scalars in the order of their numbers, in time proportional to their count.
+/// @param offset of the value, added to the places'
+void for_each_place(const ValueType& type, std::uint64_t bytes, const std::function<void(const Place&)>& visit,
+                    std::uint64_t offset = 0);
 
 }  // namespace tandem::program

@@ -49,7 +49,8 @@ const std::map<std::string, std::set<std::string>> allowed = {
     {"pathtracer", {"base", "rhi"}},
     {"compare", {"base", "rhi", "pathtracer"}},
     {"conformance", {"base", "rhi"}},
-    {"tools", {"base", "rhi", "devices", "pathtracer", "compare", "conformance"}},
+    {"program", {"base", "rhi"}},
+    {"tools", {"base", "rhi", "devices", "pathtracer", "compare", "conformance", "program"}},
 };
 
 /// Folders that show code and tests, which may include anything.
