@@ -39,9 +39,23 @@ class LayoutReader {
       result.push_constants = structure(resources.push_constant_buffers[0].base_type_id);
     if (!resources.shader_record_buffers.empty())
       result.shader_record = structure(resources.shader_record_buffers[0].base_type_id);
+    for (const spirv_cross::SpecializationConstant& constant : compiler_.get_specialization_constants())
+      result.constants.push_back(constant_layout(constant));
+    std::ranges::sort(result.constants, {}, &ConstantLayout::id);
   }
 
  private:
+  ConstantLayout constant_layout(const spirv_cross::SpecializationConstant& constant) const {
+    const spirv_cross::SPIRConstant& value = compiler_.get_constant(constant.id);
+    const SPIRType& type = compiler_.get_type(value.constant_type);
+    const bool is_bool = type.basetype == SPIRType::Boolean;
+    return {.id = constant.constant_id,
+            .name = compiler_.get_name(constant.id),
+            .type = is_bool ? ScalarType::uint32 : scalar_of(type),
+            .is_bool = is_bool,
+            .default_value = type.width == 64 ? value.scalar_u64() : value.scalar()};
+  }
+
   ScalarType scalar_of(const SPIRType& type) const {
     switch (type.basetype) {
       case SPIRType::SByte:

@@ -21,12 +21,22 @@ struct BlockLayout {
   ValueType type;        ///< a structure
 };
 
+/// A specialisation constant with its type.
+struct ConstantLayout {
+  std::uint32_t id = 0;
+  std::string name;
+  ScalarType type = ScalarType::uint32;
+  bool is_bool = false;             ///< then 0 or 1, and `type` is uint32
+  std::uint64_t default_value = 0;  ///< the bits
+};
+
 /// What has to be given to a shader.
 struct ShaderInterface {
   rhi::ShaderReflection reflection;
   std::vector<BlockLayout> blocks;          ///< sorted by (set, binding); several where variables share a binding
   std::optional<ValueType> push_constants;  ///< a structure
   std::optional<ValueType> shader_record;   ///< likewise
+  std::vector<ConstantLayout> constants;    ///< sorted by id
 };
 
 /// Reads the module. Members without a name are called "member0" and so on; an array whose length is a specialisation

@@ -31,8 +31,10 @@ const ShaderInterface& example() {
     layout(set = 0, binding = 1, scalar) buffer Out { f16vec3 results[]; };
     layout(push_constant) uniform Push { vec2 size; uint seed; List list; };
     layout(constant_id = 5) const uint steps = 8;
+    layout(constant_id = 6) const double weight = 2.25;
+    layout(constant_id = 7) const bool on = true;
     void main() {
-      results[0] = f16vec3(all.particles[0].position * weights[1]);
+      results[0] = f16vec3(all.particles[0].position * weights[1] * (on ? float(weight) : 1));
       results[1] = f16vec3(rotation * size) + float16_t(seed + steps + all.count + list.next);
     }
   )");
@@ -71,8 +73,17 @@ TEST_CASE("push constants have their members, a buffer reference as a number; co
   REQUIRE(example().push_constants.has_value());
   CHECK(paths_of(*example().push_constants, 24) ==
         std::vector<std::string>{"size.x@0", "size.y@4", "seed@8", "list@16"});
-  REQUIRE(example().reflection.specialization_constants.size() == 1);
+  REQUIRE(example().reflection.specialization_constants.size() == 3);
   CHECK(example().reflection.specialization_constants[0].name == "steps");
+  const std::vector<ConstantLayout>& constants = example().constants;
+  REQUIRE(constants.size() == 3);
+  CHECK(constants[0].id == 5);
+  CHECK(constants[0].type == ScalarType::uint32);
+  CHECK(constants[0].default_value == 8);
+  CHECK(constants[1].type == ScalarType::float64);
+  CHECK(constants[1].default_value == 0x4002000000000000);
+  CHECK(constants[2].is_bool);
+  CHECK(constants[2].default_value == 1);
   CHECK_FALSE(example().shader_record.has_value());
 }
 
