@@ -29,6 +29,24 @@ class Random {
   std::uint64_t state_;
 };
 
+constexpr std::uint64_t most_names = 20;  // in a sentence
+
+/// Whether a scalar lies in the part of that name, or is it.
+bool is_part(std::string_view path, std::string_view part) {
+  if (!path.starts_with(part)) return false;
+  return path.size() == part.size() || path[part.size()] == '.' || path[part.size()] == '[';
+}
+
+void set_text(std::span<std::byte> bytes, const ValueType& type, const Place& place, std::uint64_t index,
+              const std::string& text) {
+  try {
+    set_bits(bytes, place, from_text(place.scalar, text));
+  } catch (const Error& error) {
+    const std::string path = path_of(type, bytes.size(), index);
+    throw Error(path.empty() ? error.what() : fmt::format("{}: {}", path, error.what()));
+  }
+}
+
 }  // namespace
 
 const ValueType* unsized_array(const ValueType& type) {
@@ -76,27 +94,30 @@ void fill_values(std::span<std::byte> bytes, const ValueType& type, std::span<co
   const std::uint64_t count = scalar_count(type, bytes.size());
   if (texts.size() > count)
     throw Error(fmt::format("{} values are given, where {} holds {}", texts.size(), describe(type), count));
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    const Place place = place_of(type, bytes.size(), i);
-    try {
-      set_bits(bytes, place, from_text(place.scalar, texts[i]));
-    } catch (const Error& error) {
-      const std::string path = path_of(type, bytes.size(), i);
-      throw Error(path.empty() ? error.what() : fmt::format("{}: {}", path, error.what()));
-    }
-  }
+  std::size_t index = 0;
+  for_each_place(type, bytes.size(), [&](const Place& place) {
+    if (index < texts.size()) set_text(bytes, type, place, index, texts[index]);
+    ++index;
+  });
 }
 
-std::uint64_t scalar_named(const ValueType& type, std::uint64_t bytes, std::string_view path) {
-  const std::uint64_t count = scalar_count(type, bytes);
+void fill_part(std::span<std::byte> bytes, const ValueType& type, std::string_view part,
+               std::span<const std::string> texts) {
+  const std::uint64_t count = scalar_count(type, bytes.size());
   std::string known;
+  std::size_t used = 0, found = 0;
   for (std::uint64_t i = 0; i < count; ++i) {
-    const std::string name = path_of(type, bytes, i);
-    if (name == path) return i;
-    if (i < 20) known += (i == 0 ? "" : ", ") + name;
+    const std::string path = path_of(type, bytes.size(), i);
+    if (i < most_names) known += (i == 0 ? "" : ", ") + path;
+    if (!is_part(path, part)) continue;
+    ++found;
+    if (used < texts.size()) set_text(bytes, type, place_of(type, bytes.size(), i), i, texts[used++]);
   }
-  throw Error(fmt::format("'{}' is not the name of a value; the names are {}{}", shortened(path), known,
-                          count > 20 ? ", ..." : ""));
+  if (found == 0)
+    throw Error(fmt::format("'{}' is not the name of a value; the names are {}{}", shortened(part), known,
+                            count > most_names ? ", ..." : ""));
+  if (texts.size() > found)
+    throw Error(fmt::format("{} values are given, where {} holds {}", texts.size(), part, found));
 }
 
 }  // namespace tandem::program

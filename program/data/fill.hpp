@@ -32,7 +32,9 @@ void fill_values(std::span<std::byte> bytes, const ValueType& type, std::span<co
 /// How many elements the type's array without a length needs for so many scalars: the least number that holds them.
 std::uint64_t elements_for(const ValueType& type, std::uint64_t scalars);
 
-/// The number of a scalar by its path, as path_of names it. Throws Error for a name that is none, with those that are.
-std::uint64_t scalar_named(const ValueType& type, std::uint64_t bytes, std::string_view path);
+/// The texts become the scalars of a part of the value, "position[3]" or "position[3].y", in their order. Throws Error
+/// for a part that the type does not have, with the names of its scalars, and as fill_values does.
+void fill_part(std::span<std::byte> bytes, const ValueType& type, std::string_view part,
+               std::span<const std::string> texts);
 
 }  // namespace tandem::program

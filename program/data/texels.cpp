@@ -35,9 +35,7 @@ ScalarType component_of(TextureFormat format) {
 
 ValueType level_type(const rhi::TextureDesc& desc, std::uint32_t level) {
   const std::array<std::uint32_t, 3> size = rhi::level_size(desc, level);
-  const bool is_plain = has_plain_components(desc.format);
-  ValueType type = make_type(component_of(desc.format), is_plain ? rhi::info_of(desc.format).components : 1);
-  type = make_array(std::move(type), size[0]);
+  ValueType type = make_array(texel_type(desc.format), size[0]);
   if (rhi::side_count(desc.dimension) > 1) type = make_array(std::move(type), size[1]);
   if (size[2] > 1) type = make_array(std::move(type), size[2]);
   return type;
@@ -68,6 +66,10 @@ std::uint32_t position_of(TextureFormat format, std::uint32_t component) {
 bool has_plain_components(TextureFormat format) {
   return format != TextureFormat::rgb10a2_unorm && format != TextureFormat::rgb10a2_uint &&
          format != TextureFormat::rg11b10_float;
+}
+
+ValueType texel_type(TextureFormat format) {
+  return make_type(component_of(format), has_plain_components(format) ? rhi::info_of(format).components : 1);
 }
 
 ValueType texture_type(const rhi::TextureDesc& desc) {

@@ -11,8 +11,11 @@
 /// The texels of images as values.
 namespace tandem::program {
 
-/// What lies in all bytes of a texture: of one level its rows, "[y][x].z", of several a structure of levels. Components
-/// are whole numbers where the texel holds them so; texels that share bits are one whole number.
+/// A texel: a scalar or a vector of components, which are whole numbers where the texel holds them so; where they share
+/// bits one whole number.
+ValueType texel_type(rhi::TextureFormat format);
+
+/// What lies in all bytes of a texture: of one level its rows, "[y][x].z", of several a structure of levels.
 ValueType texture_type(const rhi::TextureDesc& desc);
 
 /// Whether every component of a texel has bytes of its own.

@@ -79,10 +79,20 @@ TEST_CASE("texts become scalars in their order, and what they are not is refused
                        "6 values are given, where struct holds 5", Error);
 }
 
-TEST_CASE("a scalar is found by its name") {
-  CHECK(scalar_named(block(), 48, "values[1].x") == 3);
-  CHECK_THROWS_WITH_AS(scalar_named(block(), 32, "value"),
-                       "'value' is not the name of a value; the names are count, values[0].x, values[0].y", Error);
+TEST_CASE("texts become a part of a value, by its name") {
+  std::vector<std::byte> bytes(48);
+  fill_part(bytes, block(), "values[1]", std::vector<std::string>{"3", "4"});
+  fill_part(bytes, block(), "values[0].y", std::vector<std::string>{"2"});
+  fill_part(bytes, block(), "count", std::vector<std::string>{"9"});
+  CHECK(texts_of(block(), bytes) == std::vector<std::string>{"9", "0", "2", "3", "4"});
+  CHECK_THROWS_WITH_AS(fill_part(bytes, block(), "coun", std::vector<std::string>{"1"}),
+                       "'coun' is not the name of a value; the names are count, values[0].x, values[0].y, "
+                       "values[1].x, values[1].y",
+                       Error);
+  CHECK_THROWS_WITH_AS(fill_part(bytes, block(), "values[1]", std::vector<std::string>(3, "1")),
+                       "3 values are given, where values[1] holds 2", Error);
+  CHECK_THROWS_WITH_AS(fill_part(bytes, block(), "count", std::vector<std::string>{"-1"}), "count: '-1' is no uint32",
+                       Error);
 }
 
 }  // namespace
