@@ -101,6 +101,17 @@ std::string to_csv(const ValueType& type, std::span<const std::byte> bytes) {
   return text;
 }
 
+std::string to_plain_text(const ValueType& type, std::span<const std::byte> bytes) {
+  std::vector<Row> rows = rows_of(type, bytes, all_lines);
+  rows.erase(rows.begin());
+  std::string text;
+  for (Row& row : rows) {
+    if (tabular(type) == nullptr) row.erase(row.begin());
+    text += fmt::format("{}\n", fmt::join(row, " "));
+  }
+  return text;
+}
+
 std::string to_columns(const ValueType& type, std::span<const std::byte> bytes, std::size_t lines) {
   std::vector<Row> rows = rows_of(type, bytes, lines);
   if (tabular(type) != nullptr)

@@ -23,6 +23,9 @@ std::vector<std::string> read_table(const std::filesystem::path& path);
 /// scalar). Anything else: a line "name,value" for each scalar.
 std::string to_csv(const ValueType& type, std::span<const std::byte> bytes);
 
+/// The numbers of to_csv alone, separated by spaces.
+std::string to_plain_text(const ValueType& type, std::span<const std::byte> bytes);
+
 /// What to_csv writes, in columns, with an index in front of the elements of an array, at most `lines` lines of values.
 std::string to_columns(const ValueType& type, std::span<const std::byte> bytes, std::size_t lines);
 

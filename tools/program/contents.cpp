@@ -253,8 +253,7 @@ std::vector<std::byte> encode_values(const std::filesystem::path& file, const Va
                                      std::span<const std::byte> bytes) {
   if (is_npy(file)) return program::to_npy(program::npy_of(type, bytes));
   if (extension_of(file) == ".csv") return bytes_of(program::to_csv(type, bytes));
-  if (extension_of(file) == ".txt")
-    return bytes_of(program::to_columns(type, bytes, std::numeric_limits<std::size_t>::max()));
+  if (extension_of(file) == ".txt") return bytes_of(program::to_plain_text(type, bytes));
   return {bytes.begin(), bytes.end()};
 }
 

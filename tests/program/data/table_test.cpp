@@ -36,6 +36,12 @@ TEST_CASE("an array is a line for each element, any other value a line for each 
   CHECK(to_csv(words, counted(words, 12)) == "value\n0\n1\n2\n");
 }
 
+TEST_CASE("plain text is the numbers alone") {
+  const ValueType items = make_array(item(), 0);
+  CHECK(to_plain_text(items, counted(items, 32)) == "0 1 2\n3 4 5\n");
+  CHECK(to_plain_text(item(), counted(item(), 16)) == "0\n1\n2\n");
+}
+
 TEST_CASE("columns are aligned, and end after as many lines as are asked for") {
   const ValueType items = make_array(item(), 0);
   CHECK(to_columns(items, counted(items, 64), 2) ==
