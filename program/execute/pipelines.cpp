@@ -79,8 +79,8 @@ rhi::RayTracingPipelineHandle make_ray_tracing(rhi::Device& device, const Job& j
 /// Makes what a descriptor of the rhi holds of what the job says.
 class Binder {
  public:
-  Binder(const Job& job, const Resources& resources, const rhi::Limits& limits, std::string label)
-      : job_(job), resources_(resources), limits_(limits), label_(std::move(label)) {}
+  Binder(const Resources& resources, const rhi::Limits& limits, std::string label)
+      : resources_(resources), limits_(limits), label_(std::move(label)) {}
 
   rhi::BoundResource bound(const Binding& binding, const rhi::ShaderBinding& wanted) const {
     return std::visit([&](const auto& use) { return bound(use, wanted); }, binding.resource);
@@ -119,18 +119,17 @@ class Binder {
     return at_position(resources_.samplers, position, label_, "sampler");
   }
 
-  const Job& job_;
   const Resources& resources_;
   const rhi::Limits& limits_;
   std::string label_;
 };
 
-std::vector<rhi::BindGroupHandle> make_bind_groups(rhi::Device& device, const Job& job, const Resources& resources,
+std::vector<rhi::BindGroupHandle> make_bind_groups(rhi::Device& device, const Resources& resources,
                                                    const Pipeline& pipeline, const rhi::PipelineHandle& handle) {
   const std::vector<rhi::ShaderBinding>& wanted = handle->interface().bindings;
   std::set<std::uint32_t> sets;
   for (const rhi::ShaderBinding& each : wanted) sets.insert(each.set);
-  const Binder binder(job, resources, device.info().limits, pipeline.name);
+  const Binder binder(resources, device.info().limits, pipeline.name);
   std::vector<rhi::BindGroupHandle> groups;
   for (const std::uint32_t set : sets) {
     rhi::BindGroupDesc desc{.pipeline = handle, .set = set, .entries = {}, .label = pipeline.name};
@@ -160,7 +159,7 @@ std::vector<BoundPipeline> make_pipelines(rhi::Device& device, const Job& job, c
     else
       handle = bound.ray_tracing =
           make_ray_tracing(device, job, pipeline.name, std::get<RayTracingStages>(pipeline.stages));
-    bound.bind_groups = make_bind_groups(device, job, resources, pipeline, handle);
+    bound.bind_groups = make_bind_groups(device, resources, pipeline, handle);
     bound.push_constants = pipeline.push_constants;
     bound.push_constants.resize(handle->interface().push_constant_size);
     pipelines.push_back(std::move(bound));

@@ -30,7 +30,16 @@ std::string_view name_of(ScalarType scalar);
 bool is_floating(ScalarType scalar);
 bool is_signed(ScalarType scalar);  ///< floats are
 
-struct Member;
+/// A member of a structure. A template, so that it may be named where ValueType is not yet complete.
+template <typename Type>
+struct BasicMember {
+  std::string name;
+  std::uint64_t offset = 0;
+  Type type;
+};
+
+struct ValueType;
+using Member = BasicMember<ValueType>;
 
 /// A type with its layout.
 struct ValueType {
@@ -47,12 +56,6 @@ struct ValueType {
   std::vector<ValueType> element = {};  ///< of an array: exactly one
   std::vector<Member> members = {};     ///< of a structure, in their order
   std::string name = {};                ///< of a structure, "" for any other
-};
-
-struct Member {
-  std::string name;
-  std::uint64_t offset = 0;
-  ValueType type;
 };
 
 /// A scalar, or with `rows` a vector, tightly packed.

@@ -72,6 +72,26 @@ foreach(device cpu cpu-exact)
   endif()
 endforeach()
 
+# Shaders from the command line: a compute shader, a ray tracing pipeline, and a job of two launches.
+set(shaders "${EXAMPLES}/run_shader")
+run("${moved}/bin/tandem" run "${shaders}/saxpy.comp" --buffer X=1,2,3 --buffer Y=10,20,30 --buffer Result=zeros:3
+    --push 2,3 --size 3 --spec negate=true --device cpu,cpu-exact --compare --save "Result=${WORK_FOLDER}/result.txt")
+file(READ "${WORK_FOLDER}/result.txt" result)
+if(NOT output MATCHES "cpu against cpu-exact: agree" OR NOT result STREQUAL "8\n16\n24\n")
+  message(FATAL_ERROR "saxpy.comp printed: ${output} and wrote: ${result}")
+endif()
+run("${moved}/bin/tandem" run "${shaders}/camera.rgen" "${shaders}/sky.rmiss" "${shaders}/depth.rchit" --scene
+    "${scenes}/cornell_box.obj" --image picture=32x32 --push position=278,273,-800 --push field_of_view=0.35 --record
+    hit:0=1,0.5,0.25 --size 32x32 --device cpu,cpu-exact --compare --ulp 64 --save "picture=${WORK_FOLDER}/depth.png")
+if(NOT output MATCHES "cpu against cpu-exact: agree" OR NOT EXISTS "${WORK_FOLDER}/depth.png")
+  message(FATAL_ERROR "camera.rgen printed: ${output}")
+endif()
+run("${moved}/bin/tandem" run --job "${shaders}/job.json" --device cpu,cpu-exact --compare --save
+    "four=${WORK_FOLDER}/four.npy")
+if(NOT output MATCHES "four +1000 of 1000 values bit-equal")
+  message(FATAL_ERROR "job.json printed: ${output}")
+endif()
+
 # A program that renders nothing needs no packages for scenes and pictures, and one for the rhi alone no backend's.
 function(check_components components)
   set(folder "${WORK_FOLDER}/only")

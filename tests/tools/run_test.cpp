@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "tests/pathtracer/load/description/json_schema.hpp"
 #include "tests/support/device_test.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/scratch_folder.hpp"
@@ -255,6 +257,42 @@ void main() { sum = 0; for (uint i = 0; i < count; ++i) sum += values[i]; }
   }
   REQUIRE(run(" --buffer In=1,1,1,1").exit_code == 0);
   CHECK(floats_of(scaling.folder.path() / "sum.bin") == std::vector<float>{12});
+}
+
+TEST_CASE("the schema of jobs accepts what is read, and nothing with other members") {
+  const JsonSchema schema(nlohmann::json::parse(read_text(TANDEM_SOURCE_DIRECTORY "/docs/schema/job.schema.json")));
+  nlohmann::json job = nlohmann::json::parse(read_text(TANDEM_SOURCE_DIRECTORY "/examples/run_shader/job.json"));
+  CHECK(schema.accepts(job));
+  job["launches"][0]["constants"] = {{"negate", true}, {"0", 1}};
+  job["launches"][0]["push"] = {1, 2.5};
+  job["launches"][0]["hit_groups"] = nlohmann::json::parse(R"([["a.rchit", "a.rahit"]])");
+  job["scene"] = "box.obj";
+  job["images"] = {{"picture", "rgba8:8x8"}};
+  CHECK(schema.accepts(job));
+  nlohmann::json without = job;
+  without.erase("launches");
+  CHECK_FALSE(schema.accepts(without));
+  job["launches"][0]["group"] = 1;
+  CHECK_FALSE(schema.accepts(job));
+}
+
+TEST_CASE("the examples of the guide run") {
+  const std::filesystem::path folder = TANDEM_SOURCE_DIRECTORY "/examples/run_shader";
+  const ScratchFolder results;
+  for (const std::string& device : device_names()) {
+    CAPTURE(device);
+    const Outcome job = run_tandem("run --job job.json --device " + device, {.folder = folder});
+    CHECK(job.errors == "");
+    CHECK(job.exit_code == 0);
+  }
+  const Outcome rays = run_tandem(
+      words("run camera.rgen sky.rmiss depth.rchit --scene ../../scenes/cornell_box.obj --image picture=64x64 --push "
+            "position=278,273,-800 --push field_of_view=0.35 --record hit:0=1,0.5,0.25 --size 64x64 --device cpu,"
+            "cpu-exact --compare --tolerance 1e-6 --save {}",
+            {"picture=" + (results.path() / "a.png").string()}),
+      {.folder = folder});
+  CHECK(rays.errors == "");
+  CHECK(rays.exit_code == 0);
 }
 
 TEST_CASE("what a shader needs is listed, and a command that would run it is proposed, which does") {

@@ -135,7 +135,7 @@ int check(const LoadedProgram& program, const RunOptions& options) {
   for (const std::string& name : options.devices) {
     const rhi::DeviceHandle device = open(name, options);
     const std::vector<std::string> reasons = program::refusals(*device, job);
-    print("{}: {}\n", device->info().name, reasons.empty() ? "can run it" : "cannot run it");
+    print("{}: {}\n", name, reasons.empty() ? "can run it" : "cannot run it");
     for (const std::string& reason : reasons) print("  {}\n", reason);
     can_run = can_run && reasons.empty();
   }
@@ -175,7 +175,7 @@ int run_program(const Options& given) {
   for (std::size_t i = 0; i < options.devices.size(); ++i) {
     if (interrupted()) throw Cancelled();
     const rhi::DeviceHandle device = open(options.devices[i], options);
-    const std::string& name = device->info().name;
+    const std::string& name = options.devices[i];
     std::optional<ShownStage> stage("shaders for " + name);
     program::Execution execution(*device, built.job);
     stage.emplace(name);

@@ -122,13 +122,15 @@ class JobBuilder {
     const auto known = std::ranges::find_if(
         result_.resources, [&](const Resource& each) { return each.key == setting.key && each.is_image == is_image; });
     if (known != result_.resources.end()) return *known;
-    const std::string& instance = needed.block != nullptr ? needed.block->instance : std::string();
+    const std::optional<KeyMatch> place = match(setting.key, needed);
+    const std::string element = place && place->element ? fmt::format("[{}]", *place->element) : "";
+    const std::string instance = needed.block != nullptr ? needed.block->instance : std::string();
     result_.resources.push_back({.key = setting.key,
                                  .is_image = is_image,
                                  .index = is_image ? result_.job.images.size() : result_.job.buffers.size(),
                                  .prefix = is_image || needed.block == nullptr ? setting.key
                                            : instance.empty()                  ? ""
-                                                                               : instance + ".",
+                                                                               : instance + element + ".",
                                  .names = needed.names});
     return result_.resources.back();
   }
