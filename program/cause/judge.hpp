@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -22,6 +23,8 @@ enum class Cause : std::uint8_t {
   device_defined,    ///< every device has its own: addresses, clocks, the size of subgroups
   mismatch           ///< one device is wrong
 };
+
+inline constexpr std::size_t cause_count = 7;
 
 /// "within precision", "device defined" and so on.
 std::string_view name_of(Cause cause);

@@ -1,5 +1,8 @@
 #include "program/record/components.hpp"
 
+#include <bit>
+#include <glm/gtc/packing.hpp>
+
 namespace tandem::program {
 namespace {
 
@@ -57,6 +60,12 @@ bool collect(const Module& module, std::uint32_t type, Component at, std::vector
 
 std::uint32_t word_count(const std::vector<Component>& components) {
   return components.empty() ? 0 : components.back().word + components.back().word_count();
+}
+
+std::uint32_t recorded_word(const Component& component, std::uint32_t bits) {
+  if (component.kind == ComponentKind::floating)
+    return std::bit_cast<std::uint32_t>(glm::unpackHalf1x16(static_cast<std::uint16_t>(bits)));
+  return bits & ((1u << component.width) - 1);
 }
 
 std::optional<std::vector<Component>> components_of(const Module& module, std::uint32_t type) {

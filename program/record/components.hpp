@@ -27,6 +27,10 @@ inline constexpr std::uint32_t most_words = 64;
 /// The scalars of a type; nothing where it has pointers or opaque members, or is larger than most_words.
 std::optional<std::vector<Component>> components_of(const Module& module, std::uint32_t type);
 
+/// What is recorded of a component of less than 32 bits that a module's constant holds in these bits: an integer
+/// without a sign, or a float of 16 bits as one of 32.
+std::uint32_t recorded_word(const Component& component, std::uint32_t bits);
+
 /// Words of such a value.
 std::uint32_t word_count(const std::vector<Component>& components);
 

@@ -24,6 +24,11 @@ bool is_recorded(spv::Op op) {
   }
 }
 
+bool is_in_block(spv::Op op) {
+  return op != spv::OpFunction && op != spv::OpFunctionParameter && op != spv::OpFunctionEnd && op != spv::OpLine &&
+         op != spv::OpNoLine;
+}
+
 bool calls_shaders(spv::Op op) {
   return op == spv::OpTraceRayKHR || op == spv::OpExecuteCallableKHR || op == spv::OpReportIntersectionKHR;
 }
@@ -91,6 +96,7 @@ Plan plan_of(const Module& module) {
   for (std::size_t i = module.first_function; i < module.instructions.size(); ++i) {
     const Instruction& instruction = module.instructions[i];
     if (instruction.op == spv::OpLabel) begin(i);
+    if (!plan.segments.empty() && is_in_block(instruction.op)) plan.segments.back().end_instruction = i + 1;
     if (instruction.type != 0 && is_recorded(instruction.op) && !plan.segments.empty() &&
         !calls_shaders(instruction.op)) {
       if (std::optional<std::vector<Component>> components = components_of(module, instruction.type)) {

@@ -36,6 +36,7 @@ struct RecordedValue {
 /// end. It is recorded as its number, then the values.
 struct Segment {
   std::size_t first_instruction = 0;  ///< position in Module::instructions: the OpLabel, or the call
+  std::size_t end_instruction = 0;    ///< behind its last one: the call, or what ends the block
   std::vector<RecordedValue> values = {};
   std::uint32_t words = 1;  ///< with the number
   bool calls = false;       ///< a call that can run other shaders follows; the last word is where the record goes on

@@ -52,7 +52,7 @@ std::vector<std::uint32_t> record_buffer(const RecordRequest& request, std::span
   words[header_slots] = word(layout.slots);
   for (std::size_t slot = 0; slot < request.invocations.size(); ++slot) {
     words[layout.table + request.invocations[slot]] = word(slot + 1);
-    words[layout.cursors + slot] = request.capacity == 0 ? 0 : word(layout.slots + slot * request.capacity);
+    words[layout.cursors + slot] = word(layout.slots + slot * request.capacity);
   }
   if (!other.empty())
     std::copy_n(other.begin(), std::min<std::size_t>(other.size(), layout.end),

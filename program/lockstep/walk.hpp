@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "program/cause/judge.hpp"
+#include "program/lockstep/recorded_launch.hpp"
+#include "program/record/recording.hpp"
+
+namespace tandem::program {
+
+/// Goes through what one invocation recorded, segment by segment, and knows at each point what every id holds.
+class Walk {
+ public:
+  /// @param launch, slot outlive the walk
+  Walk(const RecordedLaunch& launch, const SlotView& slot);
+
+  /// Goes to the next segment; false at the end of the record.
+  bool next();
+
+  const RecordedShader& shader() const noexcept { return *place_.shader; }
+  const Segment& segment() const noexcept { return *place_.segment; }
+  std::uint32_t number() const noexcept { return number_; }
+  /// Of the segment's number in the slot's words.
+  std::size_t position() const noexcept { return position_; }
+  /// How many shaders and functions are running.
+  std::size_t depth() const noexcept;
+  /// Shaders that other shaders call are inside of the one that calls them.
+  std::size_t shader_depth() const noexcept { return frames_.size(); }
+
+  /// The words that a value of this segment recorded.
+  RecordedWords words_of(const RecordedValue& value) const;
+
+  /// Makes known what the instruction holds. Called for every instruction of the segment in turn, behind the judgement
+  /// about it: in a loop its operands may have its own last value.
+  void pass(std::size_t instruction);
+
+  /// What an id of the shader holds: a constant, or its latest value. Nothing for one that is not recorded.
+  std::optional<RecordedWords> value_of(std::uint32_t id) const;
+
+ private:
+  struct Frame {
+    const RecordedShader* shader = nullptr;
+    std::size_t resumes_at = 0;  ///< the position where the shader that called this one goes on
+    std::unordered_map<std::uint32_t, std::size_t> positions;    ///< by id: its latest words
+    std::unordered_map<std::uint32_t, std::uint32_t> arguments;  ///< a parameter that is a constant: its id
+    std::vector<std::uint32_t> calls;                            ///< the OpFunctionCalls that are running
+    std::uint32_t returned = 0;                                  ///< the id that the last function returned
+  };
+
+  void enter_function(const Instruction& call);
+
+  const RecordedLaunch& launch_;
+  SlotView slot_;
+  std::size_t position_ = 0, next_position_ = 0;
+  std::uint32_t number_ = 0;
+  SegmentPlace place_;
+  std::vector<Frame> frames_;
+  std::optional<std::size_t> resumes_at_;  ///< of the segment before, which called shaders
+};
+
+/// The value of a constant; nothing for any other id. Null and undefined composites are zeros.
+std::optional<RecordedWords> constant_value(const Module& module, std::uint32_t id);
+
+}  // namespace tandem::program
