@@ -6,8 +6,8 @@
 namespace tandem::program {
 namespace {
 
-/// The position of the first segment of the entry point's function.
-bool begins_shader(const RecordedShader& shader, const Segment& segment) {
+/// Whether the segment is the first one of the entry point's function.
+bool begins(const RecordedShader& shader, const Segment& segment) {
   const std::vector<Instruction>& all = shader.module.instructions;
   const auto entry = std::ranges::find(all, spv::OpEntryPoint, &Instruction::op);
   std::size_t i = shader.module.definitions.at(entry->words[2]);
@@ -27,7 +27,8 @@ bool Walk::next() {
   if (place_.segment == nullptr || position_ + segment().words > slot_.words.size()) return false;
   next_position_ = position_ + segment().words;
   while (frames_.size() > 1 && position_ >= frames_.back().resumes_at) frames_.pop_back();
-  if (begins_shader(shader(), segment())) {
+  begins_shader_ = begins(shader(), segment());
+  if (begins_shader_) {
     // Shaders that the same call runs one after the other share a depth.
     const std::size_t resumes_at =
         resumes_at_.value_or(frames_.empty() ? slot_.words.size() : frames_.back().resumes_at);

@@ -26,6 +26,8 @@ class Walk {
   std::uint32_t number() const noexcept { return number_; }
   /// Of the segment's number in the slot's words.
   std::size_t position() const noexcept { return position_; }
+  /// Whether a shader begins with this segment.
+  bool begins_shader() const noexcept { return begins_shader_; }
   /// How many shaders and functions are running.
   std::size_t depth() const noexcept;
   /// Shaders that other shaders call are inside of the one that calls them.
@@ -57,6 +59,7 @@ class Walk {
   SlotView slot_;
   std::size_t position_ = 0, next_position_ = 0;
   std::uint32_t number_ = 0;
+  bool begins_shader_ = false;
   SegmentPlace place_;
   std::vector<Frame> frames_;
   std::optional<std::size_t> resumes_at_;  ///< of the segment before, which called shaders
