@@ -36,18 +36,27 @@ std::vector<std::uint32_t> RecordedExecution::hashes() {
   return {hashes.begin(), hashes.end()};
 }
 
+std::uint64_t RecordedExecution::needed_words(std::vector<std::uint64_t> invocations) {
+  // Slots without a word say how many they need.
+  const RecordRequest request{.launch_size = launch_.size,
+                              .invocations = std::move(invocations),
+                              .capacity = 0,
+                              .largest_segment = launch_.largest_segment};
+  const std::vector<std::uint32_t> measured = run(request, {}, false);
+  std::uint64_t needed = 1;
+  for (std::size_t slot = 0; slot < request.invocations.size(); ++slot)
+    needed = std::max(needed, slot_of(request, measured, slot).needed_words);
+  return needed;
+}
+
 Recording RecordedExecution::record(std::vector<std::uint64_t> invocations, std::uint64_t most_bytes) {
+  const std::uint64_t needed = needed_words(invocations);
   Recording recording{.request = {.launch_size = launch_.size,
                                   .invocations = std::move(invocations),
                                   .capacity = 0,
                                   .largest_segment = launch_.largest_segment},
                       .buffer = {}};
   RecordRequest& request = recording.request;
-  // Slots without a word say how many they need.
-  const std::vector<std::uint32_t> measured = run(request, {}, false);
-  std::uint64_t needed = 1;
-  for (std::size_t slot = 0; slot < request.invocations.size(); ++slot)
-    needed = std::max(needed, slot_of(request, measured, slot).needed_words);
   // The replay's buffer holds two recordings.
   const std::uint64_t largest = std::min(most_bytes, device_.info().limits.max_storage_buffer_range) / 2;
   const std::uint64_t fixed = record_buffer_size(request, false);

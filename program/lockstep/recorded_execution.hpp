@@ -27,6 +27,9 @@ class RecordedExecution {
   /// RecordForm::hash: a word for each invocation of the launch.
   std::vector<std::uint32_t> hashes();
 
+  /// RecordForm::record: words of the longest record of these invocations.
+  std::uint64_t needed_words(std::vector<std::uint64_t> invocations);
+
   /// RecordForm::record: everything that the invocations compute, in at most `most_bytes` of memory; what does not fit
   /// is cut off (SlotView::complete).
   Recording record(std::vector<std::uint64_t> invocations, std::uint64_t most_bytes);
@@ -34,6 +37,8 @@ class RecordedExecution {
   /// RecordForm::lockstep: the invocations of `other` once more. @param force whether each instruction's result is
   /// replaced by the recorded one, so that the next ones have the same operands
   Recording replay(const Recording& other, bool force);
+
+  const RecordedLaunch& launch() const noexcept { return launch_; }
 
   /// What the job's resources hold after the last run.
   Snapshot outputs();

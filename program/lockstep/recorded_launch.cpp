@@ -73,7 +73,7 @@ std::size_t pipeline_of(const Command& command) {
 
 }  // namespace
 
-RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm form) {
+RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm form, bool mirrored) {
   RecordedLaunch launch;
   Pipeline pipeline = job.pipelines.at(pipeline_of(command));
   std::vector<FixedShader> fixed;
@@ -102,8 +102,9 @@ RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm 
   for (const FixedShader& shader : fixed) {
     const Shader& original = job.shaders[shader.shader];
     Module module = parse_module(shader.spirv, original.name);
-    Recorder recorder =
-        instrument(module, {.form = form, .set = 0, .binding = binding, .first_segment = next_segment}, original.name);
+    Recorder recorder = instrument(
+        module, {.form = form, .set = 0, .binding = binding, .first_segment = next_segment, .mirrored = mirrored},
+        original.name);
     launch.job.shaders.push_back({original.name, original.stage, std::move(recorder.spirv), ""});
     for (const Segment& segment : recorder.segments)
       launch.largest_segment = std::max(launch.largest_segment, segment.words);

@@ -31,8 +31,9 @@ struct RecordedLaunch {
 };
 
 /// @param command a Dispatch or TraceRays of the job
+/// @param mirrored the first invocation does the work of the last (Mirror)
 /// Throws rhi::Error, which names the shader, for one that cannot be recorded, and for any other command.
-RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm form);
+RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm form, bool mirrored = false);
 
 /// A segment with the shader that it belongs to; null where no segment has the number.
 struct SegmentPlace {

@@ -33,8 +33,12 @@ bool Walk::next() {
     const std::size_t resumes_at =
         resumes_at_.value_or(frames_.empty() ? slot_.words.size() : frames_.back().resumes_at);
     if (!resumes_at_ && !frames_.empty()) frames_.pop_back();
-    frames_.push_back(
-        {.shader = place_.shader, .resumes_at = resumes_at, .positions = {}, .arguments = {}, .calls = {}});
+    frames_.push_back({.shader = place_.shader,
+                       .resumes_at = resumes_at,
+                       .positions = {},
+                       .arguments = {},
+                       .stores = {},
+                       .calls = {}});
   }
   resumes_at_.reset();
   if (segment().calls) resumes_at_ = std::size_t{slot_.words[next_position_ - 1]} - slot_.first_word;
@@ -57,6 +61,7 @@ void Walk::pass(std::size_t i) {
   const Instruction& instruction = shader().module.instructions[i];
   const auto value = std::ranges::find(segment().values, i, &RecordedValue::instruction);
   if (value != segment().values.end()) frame.positions[instruction.result] = position_ + value->offset;
+  if (instruction.op == spv::OpStore) frame.stores[variable_of(instruction.words[1])] = i;
   if (instruction.op == spv::OpReturnValue) frame.returned = instruction.words[1];
   if (instruction.op != spv::OpFunctionCall) return;
   if (i == segment().first_instruction) {  // it has returned
@@ -101,6 +106,37 @@ std::optional<RecordedWords> Walk::value_of(std::uint32_t id) const {
   if (const auto argument = frame.arguments.find(id); argument != frame.arguments.end() && argument->second != id)
     return value_of(argument->second);
   return constant_value(module, id);
+}
+
+std::uint32_t Walk::variable_of(std::uint32_t pointer) const {
+  const Frame& frame = frames_.back();
+  const Module& module = shader().module;
+  for (;;) {
+    if (const auto argument = frame.arguments.find(pointer); argument != frame.arguments.end()) {
+      pointer = argument->second;
+      continue;
+    }
+    const auto found = module.definitions.find(pointer);
+    if (found == module.definitions.end()) return pointer;
+    const Instruction& instruction = module.instructions[found->second];
+    switch (instruction.op) {
+      case spv::OpAccessChain:
+      case spv::OpInBoundsAccessChain:
+      case spv::OpPtrAccessChain:
+      case spv::OpInBoundsPtrAccessChain:
+      case spv::OpCopyObject:
+      case spv::OpImageTexelPointer:
+        pointer = instruction.words[3];
+        continue;
+      default:
+        return pointer;
+    }
+  }
+}
+
+std::optional<std::size_t> Walk::last_store(std::uint32_t pointer) const {
+  const auto found = frames_.back().stores.find(variable_of(pointer));
+  return found == frames_.back().stores.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::optional<RecordedWords> constant_value(const Module& module, std::uint32_t id) {

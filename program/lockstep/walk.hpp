@@ -43,12 +43,19 @@ class Walk {
   /// What an id of the shader holds: a constant, or its latest value. Nothing for one that is not recorded.
   std::optional<RecordedWords> value_of(std::uint32_t id) const;
 
+  /// The last OpStore into the variable that a pointer points into, by position in the module's instructions; nothing
+  /// where the shader has not stored into it, or another shader has.
+  std::optional<std::size_t> last_store(std::uint32_t pointer) const;
+  /// The variable that a pointer points into, also through parameters of functions.
+  std::uint32_t variable_of(std::uint32_t pointer) const;
+
  private:
   struct Frame {
     const RecordedShader* shader = nullptr;
     std::size_t resumes_at = 0;  ///< the position where the shader that called this one goes on
     std::unordered_map<std::uint32_t, std::size_t> positions;    ///< by id: its latest words
     std::unordered_map<std::uint32_t, std::uint32_t> arguments;  ///< a parameter that is a constant: its id
+    std::unordered_map<std::uint32_t, std::size_t> stores;       ///< by variable: the last OpStore
     std::vector<std::uint32_t> calls;                            ///< the OpFunctionCalls that are running
     std::uint32_t returned = 0;                                  ///< the id that the last function returned
   };

@@ -51,6 +51,13 @@ std::uint32_t Globals::constant(std::uint32_t value) {
   return entry->second;
 }
 
+std::uint32_t Globals::constant_vector(const std::array<std::uint32_t, 3>& values) {
+  const std::uint32_t type = uint_vector(3);
+  const std::array<std::uint32_t, 3> parts = {constant(values[0]), constant(values[1]), constant(values[2])};
+  declarations_.push_back(encode(spv::OpConstantComposite, {type, new_id(), parts[0], parts[1], parts[2]}));
+  return declarations_.back()[2];
+}
+
 std::uint32_t Globals::variable(spv::StorageClass storage, std::uint32_t pointee) {
   const std::uint32_t pointer = pointer_type(storage, pointee), id = new_id();
   declarations_.push_back(encode(spv::OpVariable, {pointer, id, static_cast<std::uint32_t>(storage)}));
@@ -59,12 +66,14 @@ std::uint32_t Globals::variable(spv::StorageClass storage, std::uint32_t pointee
 }
 
 std::uint32_t Globals::input(spv::BuiltIn built_in, std::uint32_t type) {
-  for (const Instruction& instruction : module_.instructions)
-    if (instruction.op == spv::OpDecorate && instruction.words.size() == 4 &&
-        instruction.words[2] == spv::DecorationBuiltIn && instruction.words[3] == static_cast<std::uint32_t>(built_in))
-      if (const auto found = module_.definitions.find(instruction.words[1]);
-          found != module_.definitions.end() && module_.instructions[found->second].op == spv::OpVariable)
-        return instruction.words[1];
+  const auto is_it = [&](const Words& words) {
+    return words.size() == 4 && (words[0] & 0xffff) == spv::OpDecorate && words[2] == spv::DecorationBuiltIn &&
+           words[3] == static_cast<std::uint32_t>(built_in);
+  };
+  for (const Words& words : annotations_)
+    if (is_it(words)) return words[1];
+  for (std::size_t i = 0; i < module_.first_global; ++i)
+    if (const Words& words = module_.instructions[i].words; is_it(words)) return words[1];
   const std::uint32_t id = variable(spv::StorageClassInput, type);
   decorate({id, spv::DecorationBuiltIn, static_cast<std::uint32_t>(built_in)});
   return id;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <initializer_list>
 #include <span>
@@ -36,6 +37,9 @@ class Globals {
   }
   /// A constant of uint.
   std::uint32_t constant(std::uint32_t value);
+
+  /// A constant uvec3.
+  std::uint32_t constant_vector(const std::array<std::uint32_t, 3>& values);
 
   /// A new global variable.
   std::uint32_t variable(spv::StorageClass storage, std::uint32_t pointee);

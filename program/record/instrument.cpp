@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "program/record/mirror.hpp"
 #include "program/record/probe_code.hpp"
 #include "rhi/error.hpp"
 
@@ -126,7 +127,9 @@ class Instrumentation {
         plan_(plan_of(module)),
         entry_(entry_point(module, label)),
         globals_(module),
-        code_(globals_, options.form, model(), options.set, options.binding) {
+        code_(globals_),
+        probes_(code_, options.form, model(), options.set, options.binding) {
+    if (options.mirrored) mirror_.emplace(module, globals_, model());
     if (options.form != RecordForm::lockstep) return;
     const std::unordered_set<std::uint32_t> addresses = addresses_of(module);
     for (const auto& [instruction, place] : plan_.value_of)
@@ -162,10 +165,10 @@ class Instrumentation {
     if (pending_ && !stands_first(instruction.op)) begin_block();
     if (ends_block(instruction.op) && is_open_) {
       const bool leaves = in_entry_ && instruction.op == spv::OpReturn;
-      code_.end_segment(leaves || instruction.op == spv::OpKill || instruction.op == spv::OpTerminateInvocation);
+      probes_.end_segment(leaves || instruction.op == spv::OpKill || instruction.op == spv::OpTerminateInvocation);
       is_open_ = false;
     }
-    if (calls_shaders(instruction.op) || instruction.op == spv::OpFunctionCall) code_.end_segment(false);
+    if (calls_shaders(instruction.op) || instruction.op == spv::OpFunctionCall) probes_.end_segment(false);
     code_.append(with_replaced_ids(instruction));
     if (instruction.op == spv::OpLabel) pending_ = i;
     if (const auto value = plan_.value_of.find(i); value != plan_.value_of.end()) {
@@ -175,12 +178,18 @@ class Instrumentation {
         record(i);
     }
     if (!ends_segment(instruction.op)) return;
-    if (calls_shaders(instruction.op)) code_.resume(plan_.segments[plan_.segment_of.at(i) - 1].words - 1);
+    if (calls_shaders(instruction.op)) probes_.resume(plan_.segments[plan_.segment_of.at(i) - 1].words - 1);
     begin_segment(i);
   }
 
+  void begin_entry() {
+    if (!mirror_) return probes_.begin_entry(probes_.id_input(), spv::StorageClassInput);
+    mirror_->begin_entry(code_);
+    probes_.begin_entry(mirror_->in_place_of(probes_.id_input()), spv::StorageClassPrivate);
+  }
+
   void begin_block() {
-    if (in_entry_ && is_first_block_) code_.begin_entry();
+    if (in_entry_ && is_first_block_) begin_entry();
     is_first_block_ = false;
     const std::size_t label = *pending_;
     pending_.reset();
@@ -191,7 +200,7 @@ class Instrumentation {
 
   void begin_segment(std::size_t instruction) {
     const std::size_t segment = plan_.segment_of.at(instruction);
-    code_.begin_segment(options_.first_segment + static_cast<std::uint32_t>(segment), plan_.segments[segment].words);
+    probes_.begin_segment(options_.first_segment + static_cast<std::uint32_t>(segment), plan_.segments[segment].words);
     is_open_ = true;
   }
 
@@ -200,13 +209,21 @@ class Instrumentation {
     const RecordedValue& value = plan_.segments[segment].values[position];
     const Instruction& instruction = module_.instructions[i];
     const auto replacement = replaced_.find(instruction.result);
-    code_.record(module_, instruction, value, replacement != replaced_.end() ? replacement->second : 0);
+    probes_.record(module_, instruction, value, replacement != replaced_.end() ? replacement->second : 0);
   }
 
-  Words with_replaced_ids(const Instruction& instruction) const {
+  Words with_replaced_ids(const Instruction& instruction) {
     Words words = instruction.words;
     for (const std::uint16_t used : instruction.used_ids)
       if (const auto found = replaced_.find(words[used]); found != replaced_.end()) words[used] = found->second;
+    if (!mirror_) return words;
+    const bool is_chain = instruction.op == spv::OpAccessChain || instruction.op == spv::OpInBoundsAccessChain;
+    for (const std::uint16_t used : instruction.used_ids) {
+      if (!mirror_->replaces(words[used])) continue;
+      words[used] = mirror_->in_place_of(words[used]);
+      if (is_chain)
+        words[1] = globals_.pointer_type(spv::StorageClassPrivate, definition(module_, instruction.type).words[3]);
+    }
     return words;
   }
 
@@ -253,7 +270,9 @@ class Instrumentation {
   Plan plan_;
   const Instruction& entry_;
   Globals globals_;
-  ProbeCode code_;
+  Code code_;
+  ProbeCode probes_;
+  std::optional<Mirror> mirror_;
   std::unordered_map<std::uint32_t, std::uint32_t> replaced_;
   std::optional<std::size_t> pending_;     ///< the OpLabel of a block whose segment has not begun
   std::vector<std::size_t> first_values_;  ///< of that block

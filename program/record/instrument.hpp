@@ -23,6 +23,7 @@ struct RecordOptions {
   std::uint32_t set = 0;  ///< of the buffer, which no shader of the pipeline uses
   std::uint32_t binding = 0;
   std::uint32_t first_segment = 0;  ///< the number of this module's first segment
+  bool mirrored = false;            ///< the first invocation does the work of the last (Mirror)
 };
 
 /// The result of an instruction.

@@ -6,16 +6,16 @@
 
 namespace tandem::program {
 
-ProbeCode::ProbeCode(Globals& globals, RecordForm form, spv::ExecutionModel model, std::uint32_t set,
-                     std::uint32_t binding)
-    : globals_(globals),
+ProbeCode::ProbeCode(Code& code, RecordForm form, spv::ExecutionModel model, std::uint32_t set, std::uint32_t binding)
+    : code_(code),
+      globals_(code.globals()),
       form_(form),
       is_compute_(model == spv::ExecutionModelGLCompute),
-      buffer_(globals.word_buffer(set, binding)),
-      id_input_(globals.input(is_compute_ ? spv::BuiltInGlobalInvocationId : spv::BuiltInLaunchIdKHR,
-                              globals.uint_vector(3))),
-      word_pointer_type_(globals.pointer_type(globals.buffer_storage(), globals.uint_type())) {
-  const auto private_word = [&] { return globals.variable(spv::StorageClassPrivate, globals.uint_type()); };
+      buffer_(globals_.word_buffer(set, binding)),
+      id_input_(globals_.input(is_compute_ ? spv::BuiltInGlobalInvocationId : spv::BuiltInLaunchIdKHR,
+                               globals_.uint_vector(3))),
+      word_pointer_type_(globals_.pointer_type(globals_.buffer_storage(), globals_.uint_type())) {
+  const auto private_word = [&] { return globals_.variable(spv::StorageClassPrivate, globals_.uint_type()); };
   header_ = private_word();
   if (form == RecordForm::hash) {
     if (is_compute_) hash_state_ = private_word();
@@ -25,14 +25,7 @@ ProbeCode::ProbeCode(Globals& globals, RecordForm form, spv::ExecutionModel mode
   if (is_compute_) cursor_ = private_word();
   if (form != RecordForm::lockstep) return;
   delta_ = private_word();
-  force_ = globals.variable(spv::StorageClassPrivate, globals.bool_type());
-}
-
-std::uint32_t ProbeCode::value(spv::Op op, std::uint32_t type, std::initializer_list<std::uint32_t> operands) {
-  Words all = {type, globals_.new_id()};
-  all.insert(all.end(), operands);
-  append(encode(op, all));
-  return all[1];
+  force_ = globals_.variable(spv::StorageClassPrivate, globals_.bool_type());
 }
 
 std::uint32_t ProbeCode::word_pointer(std::uint32_t index) {
@@ -43,17 +36,15 @@ std::uint32_t ProbeCode::plus(std::uint32_t id, std::uint32_t constant) {
   return constant == 0 ? id : value(spv::OpIAdd, globals_.uint_type(), {id, globals_.constant(constant)});
 }
 
-void ProbeCode::begin_entry() {
+void ProbeCode::begin_entry(std::uint32_t id, spv::StorageClass storage) {
   const std::uint32_t uint = globals_.uint_type();
   const auto header = [&](std::uint32_t position) { return load_word(globals_.constant(position)); };
-  // The declared type may be of int: the words are the same.
-  const std::uint32_t component_pointer =
-      globals_.pointer_type(spv::StorageClassInput, globals_.input_component(id_input_));
+  const std::uint32_t component = globals_.input_component(id_input_);  // may be int: the words are the same
+  const std::uint32_t pointer_type = globals_.pointer_type(storage, component);
   const auto coordinate = [&](std::uint32_t axis) {
-    const std::uint32_t type = globals_.input_component(id_input_);
-    const std::uint32_t pointer = value(spv::OpAccessChain, component_pointer, {id_input_, globals_.constant(axis)});
-    const std::uint32_t loaded = load(pointer, type);
-    return type == uint ? loaded : value(spv::OpBitcast, uint, {loaded});
+    const std::uint32_t loaded =
+        load(value(spv::OpAccessChain, pointer_type, {id, globals_.constant(axis)}), component);
+    return component == uint ? loaded : value(spv::OpBitcast, uint, {loaded});
   };
   const std::uint32_t row = value(spv::OpIMul, uint, {coordinate(1), header(header_width)});
   const std::uint32_t plane = value(spv::OpIMul, uint, {coordinate(2), header(header_area)});
@@ -120,7 +111,7 @@ void ProbeCode::record(const Module& module, const Instruction& instruction, con
     if (!component.path.empty()) {
       Words operands = {scalar_type(component), globals_.new_id(), instruction.result};
       operands.insert(operands.end(), component.path.begin(), component.path.end());
-      append(encode(spv::OpCompositeExtract, operands));
+      code_.append(encode(spv::OpCompositeExtract, operands));
       scalar = operands[1];
     }
     std::array<std::uint32_t, 2> words = {};
@@ -140,7 +131,7 @@ void ProbeCode::record(const Module& module, const Instruction& instruction, con
   }
   if (replacement == 0) return;
   const std::uint32_t* next = scalars.data();
-  append(encode(spv::OpCopyObject, {instruction.type, replacement, composite(module, instruction.type, next)}));
+  code_.append(encode(spv::OpCopyObject, {instruction.type, replacement, composite(module, instruction.type, next)}));
 }
 
 void ProbeCode::end_segment(bool leaves) {
@@ -221,7 +212,7 @@ std::uint32_t ProbeCode::composite(const Module& module, std::uint32_t type, con
   Words operands = {type, 0};
   for (const std::uint32_t member : member_types) operands.push_back(composite(module, member, scalars));
   operands[1] = globals_.new_id();
-  append(encode(spv::OpCompositeConstruct, operands));
+  code_.append(encode(spv::OpCompositeConstruct, operands));
   return operands[1];
 }
 

@@ -4,22 +4,24 @@
 #include <initializer_list>
 #include <vector>
 
-#include "program/record/globals.hpp"
+#include "program/record/code.hpp"
 #include "program/record/instrument.hpp"
 
 namespace tandem::program {
 
-/// The instructions of an instrumented module's functions: those of the module, which append() takes, and between them
-/// those that record. The pieces of a block are called in the order of their declaration.
+/// Writes the instructions that record, between those of the module. The pieces of a block are called in the order of
+/// their declaration.
 class ProbeCode {
  public:
-  ProbeCode(Globals& globals, RecordForm form, spv::ExecutionModel model, std::uint32_t set, std::uint32_t binding);
+  /// @param code outlives the probes
+  ProbeCode(Code& code, RecordForm form, spv::ExecutionModel model, std::uint32_t set, std::uint32_t binding);
 
-  void append(Words words) { instructions_.push_back(std::move(words)); }
-  const std::vector<Words>& instructions() const noexcept { return instructions_; }
+  /// The input that tells invocations apart: GlobalInvocationId, or LaunchId.
+  std::uint32_t id_input() const noexcept { return id_input_; }
 
   /// At the beginning of the entry point: whether and where this invocation records.
-  void begin_entry();
+  /// @param id the input, or a variable in its place; `storage` is its class
+  void begin_entry(std::uint32_t id, spv::StorageClass storage);
   /// Takes `words` words for the segment, and writes its number.
   void begin_segment(std::uint32_t number, std::uint32_t words);
   /// Writes the result of an instruction that stands in front. Lockstep: `replacement` becomes the other device's
@@ -33,9 +35,11 @@ class ProbeCode {
   void resume(std::uint32_t link);
 
  private:
-  std::uint32_t value(spv::Op op, std::uint32_t type, std::initializer_list<std::uint32_t> operands);
-  std::uint32_t load(std::uint32_t variable, std::uint32_t type) { return value(spv::OpLoad, type, {variable}); }
-  void store(std::uint32_t pointer, std::uint32_t object) { append(encode(spv::OpStore, {pointer, object})); }
+  std::uint32_t value(spv::Op op, std::uint32_t type, std::initializer_list<std::uint32_t> operands) {
+    return code_.value(op, type, operands);
+  }
+  std::uint32_t load(std::uint32_t pointer, std::uint32_t type) { return code_.load(pointer, type); }
+  void store(std::uint32_t pointer, std::uint32_t object) { code_.store(pointer, object); }
   std::uint32_t word_pointer(std::uint32_t index);
   std::uint32_t load_word(std::uint32_t index) { return load(word_pointer(index), globals_.uint_type()); }
   void store_word(std::uint32_t index, std::uint32_t word) { store(word_pointer(index), word); }
@@ -46,6 +50,7 @@ class ProbeCode {
   std::uint32_t scalar_of(const Component& component, const std::uint32_t* words);
   std::uint32_t composite(const Module& module, std::uint32_t type, const std::uint32_t*& scalars);
 
+  Code& code_;
   Globals& globals_;
   RecordForm form_;
   bool is_compute_;
@@ -57,7 +62,6 @@ class ProbeCode {
   std::uint32_t delta_ = 0, force_ = 0, hash_state_ = 0;
   // Of the segment.
   std::uint32_t base_ = 0, other_base_ = 0, takes_ = 0, hash_ = 0;
-  std::vector<Words> instructions_;
 };
 
 }  // namespace tandem::program

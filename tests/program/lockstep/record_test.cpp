@@ -220,3 +220,40 @@ TANDEM_DEVICE_TEST("a slot that is too small says how many words it needs") {
   CHECK(words > 50);
   CHECK(std::ranges::equal(part.words.first(words), all.words.first(words)));
 }
+
+/// The words of a replay of all invocations that are others than the record's.
+std::size_t count_differences(const Recording& a, const Recording& b) {
+  std::size_t different = 0;
+  for (std::size_t slot = 0; slot < a.request.invocations.size(); ++slot) {
+    const SlotView of_a = slot_of(a.request, a.buffer, slot), of_b = slot_of(b.request, b.buffer, slot);
+    for (std::size_t i = 0; i < of_a.words.size(); ++i) different += of_a.words[i] != of_b.words[i];
+  }
+  return different;
+}
+
+TANDEM_DEVICE_TEST("mirrored, a launch computes the same, but for what depends on the order of invocations") {
+  const Job job = busy_job();
+  const RecordedLaunch to_record = record_launch(job, job.commands[0], RecordForm::record);
+  RecordedExecution recorder(recording(device_name), to_record, inputs_of(job));
+  const Recording recorded = recorder.record(all_of(to_record), plenty);
+  const RecordedLaunch to_mirror = record_launch(job, job.commands[0], RecordForm::lockstep, true);
+  RecordedExecution mirror(recording(device_name), to_mirror, inputs_of(job));
+  for (const bool force : {false, true}) {
+    CHECK(count_differences(recorded, mirror.replay(recorded, force)) == 0);
+    CHECK(mirror.outputs().buffers[1] == recorder.outputs().buffers[1]);
+  }
+
+  Job tickets = job;
+  tickets.shaders[0].spirv = glsl::compile(R"(#version 460
+    layout(local_size_x = 4) in;
+    layout(set = 0, binding = 3) buffer Out { uint next; uint result[]; };
+    void main() { result[gl_GlobalInvocationID.x] = atomicAdd(next, 1u) * 2u; })",
+                                           rhi::ShaderStage::compute, "tickets");
+  const RecordedLaunch to_record_tickets = record_launch(tickets, job.commands[0], RecordForm::record);
+  RecordedExecution ticket_recorder(recording(device_name), to_record_tickets, inputs_of(job));
+  const Recording of_tickets = ticket_recorder.record(all_of(to_record_tickets), plenty);
+  const RecordedLaunch to_mirror_tickets = record_launch(tickets, job.commands[0], RecordForm::lockstep, true);
+  RecordedExecution ticket_mirror(recording(device_name), to_mirror_tickets, inputs_of(job));
+  // Every invocation draws another ticket; its product has the recorded operand.
+  CHECK(count_differences(of_tickets, ticket_mirror.replay(of_tickets, true)) == 8);
+}
