@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "program/execute/execution.hpp"
+#include "program/explain/output_sites.hpp"
+#include "program/lockstep/ray_arbiter.hpp"
 #include "rhi/error.hpp"
 
 namespace tandem::program {
@@ -20,10 +22,10 @@ class Recorder {
   Recorder(rhi::Device& device, const Job& job, const Command& command, const Snapshot& inputs)
       : device_(device), job_(job), command_(command), inputs_(inputs) {}
 
-  RecordedExecution& of(RecordForm form) {
-    Form& made = forms_[static_cast<std::size_t>(form)];
+  RecordedExecution& of(RecordForm form, bool mirrored = false) {
+    Form& made = forms_[mirrored ? 3 : static_cast<std::size_t>(form)];
     if (made.execution == nullptr) {
-      made.launch = std::make_unique<RecordedLaunch>(record_launch(job_, command_, form));
+      made.launch = std::make_unique<RecordedLaunch>(record_launch(job_, command_, form, mirrored));
       made.execution = std::make_unique<RecordedExecution>(device_, *made.launch, inputs_);
     }
     return *made.execution;
@@ -45,7 +47,7 @@ class Recorder {
   const Job& job_;
   const Command& command_;
   const Snapshot& inputs_;
-  std::array<Form, 3> forms_;
+  std::array<Form, 4> forms_;  ///< by RecordForm; the last is the mirrored lockstep
 };
 
 /// At most `most` of the values, evenly spread.
@@ -109,7 +111,8 @@ class Selection {
 };
 
 std::vector<OutputState> compare_outputs(const Snapshot& inputs, const Snapshot& plain_a, const Snapshot& plain_b,
-                                         const Snapshot& recorded_a, const Snapshot& free_b, const Snapshot& forced_b) {
+                                         const Snapshot& recorded_a, const Snapshot& free_b, const Snapshot& forced_b,
+                                         const Snapshot& mirrored_a) {
   std::vector<OutputState> outputs;
   const auto add = [&](bool is_image, auto member) {
     const auto& before = inputs.*member;
@@ -121,7 +124,8 @@ std::vector<OutputState> compare_outputs(const Snapshot& inputs, const Snapshot&
                          .plain_equal = of_a == of_b,
                          .forced_equal = (recorded_a.*member)[i] == (forced_b.*member)[i],
                          .record_changed_a = of_a != (recorded_a.*member)[i],
-                         .record_changed_b = of_b != (free_b.*member)[i]});
+                         .record_changed_b = of_b != (free_b.*member)[i],
+                         .order_changed = (recorded_a.*member)[i] != (mirrored_a.*member)[i]});
     }
   };
   add(false, &Snapshot::buffers);
@@ -135,6 +139,21 @@ std::size_t most_interesting(const Explanation& explanation) {
   const auto first =
       std::ranges::find_if(explanation.first, [](const FirstDifference& each) { return each.value.has_value(); });
   return first == explanation.first.end() ? 0 : static_cast<std::size_t>(first - explanation.first.begin());
+}
+
+/// A launch that begins behind the first workgroup is not mirrored: the shader does not know where it begins.
+bool can_be_mirrored(const Command& command) {
+  const auto* dispatch = std::get_if<Dispatch>(&command);
+  return dispatch == nullptr || dispatch->base_workgroup == std::array<std::uint32_t, 3>{};
+}
+
+/// Whether something differs that the order of invocations may explain.
+bool is_open(const LockstepComparison& lockstep, const Snapshot& recorded_a, const Snapshot& forced_b) {
+  return recorded_a.buffers != forced_b.buffers || recorded_a.images != forced_b.images ||
+         std::ranges::any_of(lockstep.sites, [](const Site& site) {
+           return site.example.judgement.cause == Cause::mismatch &&
+                  site.example.judgement.wrong == WrongDevice::unknown;
+         });
 }
 
 Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, const Command& command,
@@ -159,9 +178,25 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
   result.forced = replayer.replay(result.a, true);
   const Snapshot forced_b = replayer.outputs();
   result.launch = on_a.take_launch(RecordForm::record);
-  result.lockstep = compare_lockstep(*result.launch, result.a, result.forced);
+
+  Circumstances circumstances;
+  circumstances.same_subgroups = a.info().limits.subgroup_size == b.info().limits.subgroup_size;
+  std::optional<RayArbiter> rays;
+  if (options.exact != nullptr && !job.top_levels.empty()) {
+    rays.emplace(*options.exact, result.launch->job);
+    circumstances.rays = &*rays;
+  }
+  result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
+  Snapshot mirrored_a = recorded_a;
+  if (options.check_order && can_be_mirrored(command) && is_open(result.lockstep, recorded_a, forced_b)) {
+    RecordedExecution& mirror = on_a.of(RecordForm::lockstep, true);
+    const Recording mirrored = mirror.replay(result.a, true);
+    circumstances.order_dependent = differing_sites(*result.launch, result.a, mirrored);
+    mirrored_a = mirror.outputs();
+    result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
+  }
   for (std::size_t slot = 0; slot < selection.invocations.size(); ++slot)
-    result.first.push_back(first_difference(*result.launch, result.a, result.free, slot));
+    result.first.push_back(first_difference(*result.launch, result.a, result.free, slot, circumstances));
 
   Job single = job;
   single.commands = {command};
@@ -171,7 +206,13 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     execution.run();
     return snapshot_of(execution, single);
   };
-  result.outputs = compare_outputs(inputs, plain(a), plain(b), recorded_a, free_b, forced_b);
+  result.outputs = compare_outputs(inputs, plain(a), plain(b), recorded_a, free_b, forced_b, mirrored_a);
+  // Where memory depends on the order of invocations, it says nothing.
+  std::vector<char> ignored(inputs.buffers.size(), 0);
+  for (const OutputState& output : result.outputs)
+    if (!output.is_image && output.order_changed) ignored[output.index] = 1;
+  for (Site& site : output_sites(*result.launch, result.a, recorded_a, forced_b, ignored))
+    result.lockstep.sites.insert(result.lockstep.sites.begin(), std::move(site));
   result.slot = most_interesting(result);
   return result;
 }

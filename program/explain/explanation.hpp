@@ -26,6 +26,7 @@ struct ExplainOptions {
   std::size_t most_invocations = 4096;
   /// Runs the command on device a once more, the last invocation first, to know which values depend on that order.
   bool check_order = true;
+  rhi::Device* exact = nullptr;  ///< decides about rays, as RayArbiter does; null: nobody does
 };
 
 /// Whether an output (a buffer or an image) holds the same bytes.

@@ -57,12 +57,14 @@ std::string difference_text(const Difference& difference, const ExplanationNames
   const Instruction& instruction = shader.module.instructions[difference.instruction];
   std::string text = fmt::format("  {}\n", place_text(shader, difference.instruction));
   if (!place.text.empty()) text += fmt::format("    {}\n", place.text);
-  text += fmt::format("    {} = {}\n", name_of(shader.module, instruction.result),
-                      describe_instruction(shader.module, difference.instruction));
+  const std::string operation = describe_instruction(shader.module, difference.instruction);
+  text += instruction.result == 0 ? fmt::format("    {}\n", operation)
+                                  : fmt::format("    {} = {}\n", name_of(shader.module, instruction.result), operation);
   for (std::size_t i = 0; i < difference.operands.size(); ++i)
     if (difference.operands[i])
       text += fmt::format("      {} = {}\n", name_of(shader.module, instruction.words[instruction.used_ids[i]]),
                           value_text(*difference.operands[i]));
+  if (difference.a.components.empty()) return text;
   const std::size_t component = first_other_component(difference.a, difference.b);
   text += value_line(names.a, difference.a, component, difference.judgement.error_a);
   text += value_line(names.b, difference.b, component, difference.judgement.error_b);

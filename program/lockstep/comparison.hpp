@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "program/cause/judge.hpp"
+#include "program/lockstep/circumstances.hpp"
 #include "program/lockstep/recorded_execution.hpp"
 #include "program/lockstep/recorded_launch.hpp"
 
@@ -18,8 +20,9 @@ struct Difference {
   const RecordedShader* shader = nullptr;
   std::size_t instruction = 0;  ///< position in its module's instructions
   std::size_t slot = 0;
-  std::size_t position = 0;                            ///< of the value in the slot's words
-  std::size_t order = 0;                               ///< how many values the invocation had recorded before
+  std::size_t position = 0;  ///< of the value in the slot's words
+  std::size_t order = 0;     ///< how many values the invocation had recorded before
+  bool is_address = false;
   std::vector<std::optional<RecordedWords>> operands;  ///< by Instruction::used_ids
   RecordedWords a, b;
   Judgement judgement;
@@ -49,14 +52,18 @@ int gravity(Cause cause);
 
 /// @param a what a device recorded
 /// @param b what another one did in its place, forced along it
-LockstepComparison compare_lockstep(const RecordedLaunch& launch, const Recording& a, const Recording& b);
+LockstepComparison compare_lockstep(const RecordedLaunch& launch, const Recording& a, const Recording& b,
+                                    const Circumstances& circumstances);
+
+/// The instructions whose results differ.
+std::set<SiteKey> differing_sites(const RecordedLaunch& launch, const Recording& a, const Recording& b);
 
 /// Where two executions of an invocation, neither of which is forced, have other bits for the first time.
 struct FirstDifference {
   std::optional<Difference> value;     ///< the first value
   std::optional<Difference> decision;  ///< the first one that decides where the shader goes: a branch or a switch
 };
-FirstDifference first_difference(const RecordedLaunch& launch, const Recording& a, const Recording& b,
-                                 std::size_t slot);
+FirstDifference first_difference(const RecordedLaunch& launch, const Recording& a, const Recording& b, std::size_t slot,
+                                 const Circumstances& circumstances);
 
 }  // namespace tandem::program

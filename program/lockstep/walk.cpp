@@ -33,12 +33,10 @@ bool Walk::next() {
     const std::size_t resumes_at =
         resumes_at_.value_or(frames_.empty() ? slot_.words.size() : frames_.back().resumes_at);
     if (!resumes_at_ && !frames_.empty()) frames_.pop_back();
-    frames_.push_back({.shader = place_.shader,
-                       .resumes_at = resumes_at,
-                       .positions = {},
-                       .arguments = {},
-                       .stores = {},
-                       .calls = {}});
+    Frame frame;
+    frame.shader = place_.shader;
+    frame.resumes_at = resumes_at;
+    frames_.push_back(std::move(frame));
   }
   resumes_at_.reset();
   if (segment().calls) resumes_at_ = std::size_t{slot_.words[next_position_ - 1]} - slot_.first_word;
@@ -62,6 +60,8 @@ void Walk::pass(std::size_t i) {
   const auto value = std::ranges::find(segment().values, i, &RecordedValue::instruction);
   if (value != segment().values.end()) frame.positions[instruction.result] = position_ + value->offset;
   if (instruction.op == spv::OpStore) frame.stores[variable_of(instruction.words[1])] = i;
+  if (instruction.op == spv::OpRayQueryInitializeKHR) frame.queries[variable_of(instruction.words[1])] = operands_of(i);
+  if (instruction.op == spv::OpTraceRayKHR) frame.traced = operands_of(i);
   if (instruction.op == spv::OpReturnValue) frame.returned = instruction.words[1];
   if (instruction.op != spv::OpFunctionCall) return;
   if (i == segment().first_instruction) {  // it has returned
@@ -89,6 +89,7 @@ void Walk::enter_function(const Instruction& call) {
       frame.positions[declared.result] = found->second;
     else
       frame.arguments[declared.result] = given;
+    if (definition(module, declared.type).op == spv::OpTypePointer) frame.passed.insert(variable_of(given));
   }
 }
 
@@ -106,6 +107,25 @@ std::optional<RecordedWords> Walk::value_of(std::uint32_t id) const {
   if (const auto argument = frame.arguments.find(id); argument != frame.arguments.end() && argument->second != id)
     return value_of(argument->second);
   return constant_value(module, id);
+}
+
+OperandValues Walk::operands_of(std::size_t i) const {
+  OperandValues operands{i, {}};
+  const Instruction& instruction = shader().module.instructions[i];
+  for (const std::uint16_t used : instruction.used_ids) operands.values.push_back(value_of(instruction.words[used]));
+  return operands;
+}
+
+const OperandValues* Walk::query_ray(std::uint32_t query) const {
+  const auto found = frames_.back().queries.find(variable_of(query));
+  return found == frames_.back().queries.end() ? nullptr : &found->second;
+}
+
+const OperandValues* Walk::traced_ray(const RecordedShader*& caller) const {
+  if (frames_.size() < 2) return nullptr;
+  const Frame& frame = frames_[frames_.size() - 2];
+  caller = frame.shader;
+  return frame.traced.values.empty() ? nullptr : &frame.traced;
 }
 
 std::uint32_t Walk::variable_of(std::uint32_t pointer) const {
@@ -137,6 +157,16 @@ std::uint32_t Walk::variable_of(std::uint32_t pointer) const {
 std::optional<std::size_t> Walk::last_store(std::uint32_t pointer) const {
   const auto found = frames_.back().stores.find(variable_of(pointer));
   return found == frames_.back().stores.end() ? std::nullopt : std::optional(found->second);
+}
+
+int built_in_of(const Module& module, std::uint32_t variable) {
+  for (std::size_t i = 0; i < module.first_global; ++i) {
+    const Instruction& instruction = module.instructions[i];
+    if (instruction.op == spv::OpDecorate && instruction.words[1] == variable &&
+        instruction.words[2] == spv::DecorationBuiltIn)
+      return static_cast<int>(instruction.words[3]);
+  }
+  return -1;
 }
 
 std::optional<RecordedWords> constant_value(const Module& module, std::uint32_t id) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "program/cause/judge.hpp"
@@ -11,6 +12,12 @@
 #include "program/record/recording.hpp"
 
 namespace tandem::program {
+
+/// What the operands of an instruction held, by Instruction::used_ids.
+struct OperandValues {
+  std::size_t instruction = 0;  ///< position in the module's instructions
+  std::vector<std::optional<RecordedWords>> values;
+};
 
 /// Goes through what one invocation recorded, segment by segment, and knows at each point what every id holds.
 class Walk {
@@ -46,6 +53,15 @@ class Walk {
   /// The last OpStore into the variable that a pointer points into, by position in the module's instructions; nothing
   /// where the shader has not stored into it, or another shader has.
   std::optional<std::size_t> last_store(std::uint32_t pointer) const;
+  /// Whether a pointer into the variable has been given to a function, which may have stored into it.
+  bool was_passed(std::uint32_t variable) const { return frames_.back().passed.contains(variable); }
+
+  /// The operands (by Instruction::used_ids) of the last OpRayQueryInitialize of a query; nothing before it.
+  const OperandValues* query_ray(std::uint32_t query) const;
+  /// The operands of the OpTraceRay that runs this shader; nothing in a ray generation shader. `caller` becomes the
+  /// shader that has it.
+  const OperandValues* traced_ray(const RecordedShader*& caller) const;
+
   /// The variable that a pointer points into, also through parameters of functions.
   std::uint32_t variable_of(std::uint32_t pointer) const;
 
@@ -57,9 +73,13 @@ class Walk {
     std::unordered_map<std::uint32_t, std::uint32_t> arguments;  ///< a parameter that is a constant: its id
     std::unordered_map<std::uint32_t, std::size_t> stores;       ///< by variable: the last OpStore
     std::vector<std::uint32_t> calls;                            ///< the OpFunctionCalls that are running
+    std::unordered_set<std::uint32_t> passed;                    ///< variables into which functions have got a pointer
+    std::unordered_map<std::uint32_t, OperandValues> queries;    ///< by variable: what it was initialised with
+    OperandValues traced;                                        ///< of the last OpTraceRay
     std::uint32_t returned = 0;                                  ///< the id that the last function returned
   };
 
+  OperandValues operands_of(std::size_t instruction) const;
   void enter_function(const Instruction& call);
 
   const RecordedLaunch& launch_;
@@ -71,6 +91,9 @@ class Walk {
   std::vector<Frame> frames_;
   std::optional<std::size_t> resumes_at_;  ///< of the segment before, which called shaders
 };
+
+/// The built-in of spv::BuiltIn that a variable is decorated as, or -1.
+int built_in_of(const Module& module, std::uint32_t variable);
 
 /// The value of a constant; nothing for any other id. Null and undefined composites are zeros.
 std::optional<RecordedWords> constant_value(const Module& module, std::uint32_t id);

@@ -90,6 +90,7 @@ struct Plan {
 
 Plan plan_of(const Module& module) {
   Plan plan;
+  const std::unordered_set<std::uint32_t> addresses = addresses_of(module);
   const auto begin = [&](std::size_t instruction) {
     plan.segment_of.emplace(instruction, plan.segments.size());
     plan.segments.push_back({.first_instruction = instruction});
@@ -104,7 +105,7 @@ Plan plan_of(const Module& module) {
         Segment& segment = plan.segments.back();
         plan.value_of.emplace(i, std::pair(plan.segments.size() - 1, segment.values.size()));
         const std::uint32_t words = word_count(*components);
-        segment.values.push_back({i, segment.words, std::move(*components)});
+        segment.values.push_back({i, segment.words, std::move(*components), addresses.contains(instruction.result)});
         segment.words += words;
       }
     }
@@ -131,10 +132,9 @@ class Instrumentation {
         probes_(code_, options.form, model(), options.set, options.binding) {
     if (options.mirrored) mirror_.emplace(module, globals_, model());
     if (options.form != RecordForm::lockstep) return;
-    const std::unordered_set<std::uint32_t> addresses = addresses_of(module);
-    for (const auto& [instruction, place] : plan_.value_of)
-      if (const std::uint32_t id = module.instructions[instruction].result; !addresses.contains(id))
-        replaced_.emplace(id, globals_.new_id());
+    for (const Segment& segment : plan_.segments)
+      for (const RecordedValue& value : segment.values)
+        if (!value.is_address) replaced_.emplace(module.instructions[value.instruction].result, globals_.new_id());
   }
 
   Recorder run() {

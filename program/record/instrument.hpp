@@ -31,6 +31,7 @@ struct RecordedValue {
   std::size_t instruction = 0;  ///< position in Module::instructions
   std::uint32_t offset = 0;     ///< of its first word, from the segment's first one on
   std::vector<Component> components = {};
+  bool is_address = false;  ///< or what one is made of: another on each device, and never taken over
 };
 
 /// A stretch of a block that is executed as a whole: from its beginning, or from a call on, to the next call or its
