@@ -98,6 +98,7 @@ void Value::fail(std::string_view sentence) const {
 bool Value::is_array() const { return json_->is_array(); }
 bool Value::is_object() const { return json_->is_object(); }
 bool Value::is_string() const { return json_->is_string(); }
+bool Value::is_boolean() const { return json_->is_boolean(); }
 
 std::string Value::text() const {
   if (!json_->is_string()) fail("must be a text");

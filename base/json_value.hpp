@@ -58,6 +58,7 @@ class Value {
   bool is_array() const;
   bool is_object() const;
   bool is_string() const;
+  bool is_boolean() const;
 
   std::string text() const;
   bool boolean() const;

@@ -14,8 +14,10 @@ using Action = std::function<int()>;
 
 namespace exit_code {
 inline constexpr int success = 0;
-inline constexpr int differ = 1;  ///< the images differ (diff, matrix, gallery, suite); a mismatch (explain)
-inline constexpr int failed = 1;  ///< `tandem conformance`, `bench --kernels`: a device is wrong
+inline constexpr int differ =
+    1;  ///< the images differ (diff, matrix, gallery, suite); results do (run); a mismatch (explain)
+inline constexpr int failed =
+    1;  ///< `conformance`, `bench --kernels`: a device is wrong; `run --check`: one cannot run it
 inline constexpr int error = 2;
 inline constexpr int explained = 3;  ///< the images differ, but for reasons that the scene owns (diff, gallery, suite)
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
@@ -39,5 +41,6 @@ void add_conformance_command(CLI::App& app, Action& action);
 void add_study_command(CLI::App& app, Action& action);
 void add_matrix_command(CLI::App& app, Action& action);
 void add_suite_command(CLI::App& app, Action& action);
+void add_run_command(CLI::App& app, Action& action);
 
 }  // namespace tandem::tools

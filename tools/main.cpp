@@ -32,7 +32,7 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", "tandem " TANDEM_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device is\n"
+      "Exit code: 0 success, or the results agree; 1 they differ (diff, matrix, gallery, suite, run) or a device is\n"
       "wrong (explain, conformance, bench); 2 any error, with one sentence on standard error; 3 the images differ for "
       "reasons\n"
       "that the scene owns (diff, gallery, suite); 130 interrupted.\n"
@@ -46,6 +46,7 @@ int run(int argc, char** argv) {
   Action action;
   add_devices_command(app, action);
   add_render_command(app, action);
+  add_run_command(app, action);
   add_diff_command(app, action);
   add_explain_command(app, action);
   add_generate_command(app, action);

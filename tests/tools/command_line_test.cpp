@@ -44,6 +44,10 @@ TEST_CASE("every command explains itself and all its options") {
        "SCENE --pixel --sample --a --b --arbiter --trace-a --trace-b --all-events --probe --json Exit Examples" +
            image},
       {"generate", "--triangles --output Example"},
+      {"run",
+       "SHADER --job -D -I --buffer --image --sampler --scene --non-opaque --spec --push --record --hit --entry "
+       "--recursion --groups --size --device --compare --ulp --tolerance --save --print --lines --list --check --time "
+       "--threads --validation Exit Examples"},
       {"gallery", "LIST --out --device --only --size --spp --threads Exit Examples"},
       {"bench", "SCENE --kernels --device --repeat --json Exit Examples" + image},
       {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},

@@ -65,6 +65,10 @@ Job ray_job() {
   const Triangles triangle{.positions = {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}}, .indices = {0, 1, 2}};
   Instance moved{.bottom_level = 0, .custom_index = 100};
   moved.object_to_world[3] = 1;
+  TraceRays trace;
+  trace.miss = {{.shader = 0}};
+  trace.hit = {{.shader = 0, .data = bytes_of({0.5f})}, {.shader = 1, .data = bytes_of({0.25f})}};
+  trace.size = {4, 1, 1};
   return {
       .shaders = {shader("generation", rhi::ShaderStage::ray_generation, ray_generation),
                   shader("miss", rhi::ShaderStage::miss, miss),
@@ -83,10 +87,7 @@ Job ray_job() {
                                                                 .intersection = Stage{.shader = 3}}}},
                      .bindings = {{.binding = 0, .resource = TopLevelUse{0}},
                                   {.binding = 1, .resource = BufferUse{0}}}}},
-      .commands = {TraceRays{.pipeline = 0,
-                             .miss = {{.shader = 0}},
-                             .hit = {{.shader = 0, .data = bytes_of({0.5f})}, {.shader = 1, .data = bytes_of({0.25f})}},
-                             .size = {4, 1, 1}}}};
+      .commands = {trace}};
 }
 
 TANDEM_DEVICE_TEST("a trace of a job runs its shaders with their records; a constant's value is its stage's alone") {
