@@ -55,7 +55,8 @@ struct Comparing {
                           .a = std::move(a),
                           .b = std::move(b),
                           .judgement = {}};
-    difference.judgement = judge(module, module.instructions[i], difference.operands, difference.a, difference.b);
+    difference.judgement = judge(module, module.instructions[i], difference.operands, difference.a, difference.b,
+              [&](std::uint32_t id) { return walk.value_of(id); });
     difference.judgement = judge_by_circumstances(walk, difference, circumstances);
     return difference;
   }
