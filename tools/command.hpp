@@ -18,6 +18,8 @@ inline constexpr int differ =
     1;  ///< the images differ (diff, matrix, gallery, suite); results do (run); a mismatch (explain)
 inline constexpr int failed =
     1;  ///< `conformance`, `bench --kernels`: a device is wrong; `run --check`: one cannot run it
+inline constexpr int differ = 1;  ///< the images differ (diff, matrix, gallery, suite); a mismatch (explain)
+inline constexpr int failed = 1;  ///< `tandem conformance`, `amber`, `bench --kernels`: a device is wrong
 inline constexpr int error = 2;
 inline constexpr int explained = 3;  ///< the images differ, but for reasons that the scene owns (diff, gallery, suite)
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
@@ -30,6 +32,7 @@ constexpr int exit_code_of(compare::Outcome outcome) {
                                                   : exit_code::differ;
 }
 
+void add_amber_command(CLI::App& app, Action& action);
 void add_devices_command(CLI::App& app, Action& action);
 void add_render_command(CLI::App& app, Action& action);
 void add_diff_command(CLI::App& app, Action& action);

@@ -34,6 +34,9 @@ int run(int argc, char** argv) {
   app.footer(
       "Exit code: 0 success, or the results agree; 1 they differ (diff, matrix, gallery, suite, run) or a device is\n"
       "wrong (explain, conformance, bench); 2 any error, with one sentence on standard error; 3 the images differ for "
+      "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device is\n"
+      "wrong (explain, conformance, bench, amber); 2 any error, with one sentence on standard error; 3 the images "
+      "differ for "
       "reasons\n"
       "that the scene owns (diff, gallery, suite); 130 interrupted.\n"
       "Environment variables:\n"
@@ -56,6 +59,7 @@ int run(int argc, char** argv) {
   add_study_command(app, action);
   add_matrix_command(app, action);
   add_suite_command(app, action);
+  add_amber_command(app, action);
   const char* const hint = "'tandem --help' lists the commands";
   if (argc < 2) return fail(fmt::format("a command is required; {}", hint));
   if (argv[1][0] != '-' &&

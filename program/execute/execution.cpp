@@ -146,6 +146,13 @@ void Execution::set_buffer(std::size_t index, std::span<const std::byte> bytes) 
   state_->device.submit(list)->wait();
 }
 
+void Execution::replace_buffer(std::size_t index, std::span<const std::byte> bytes) {
+  state_->buffer(index);  // there is one
+  if (bytes.empty()) return;
+  state_->resources.buffers[index] = make_buffer(state_->device, state_->job, index, bytes);
+  bind_again(state_->device, state_->job, state_->resources, state_->pipelines);
+}
+
 void Execution::set_image(std::size_t index, std::span<const std::byte> bytes) {
   const rhi::TextureHandle& image = state_->image(index);
   const std::string& label = image->desc().label;

@@ -39,6 +39,8 @@ class Execution {
   /// Writes all bytes of a buffer, or of an image's levels.
   void set_buffer(std::size_t index, std::span<const std::byte> bytes);
   void set_image(std::size_t index, std::span<const std::byte> bytes);
+  /// Puts a new buffer of these bytes, however many, in the place of one. No bytes: the old one stays.
+  void replace_buffer(std::size_t index, std::span<const std::byte> bytes);
 
  private:
   struct State;

@@ -167,4 +167,14 @@ std::vector<BoundPipeline> make_pipelines(rhi::Device& device, const Job& job, c
   return pipelines;
 }
 
+void bind_again(rhi::Device& device, const Job& job, const Resources& resources,
+                std::vector<BoundPipeline>& pipelines) {
+  for (std::size_t i = 0; i < pipelines.size(); ++i) {
+    BoundPipeline& bound = pipelines[i];
+    const rhi::PipelineHandle handle =
+        bound.compute != nullptr ? rhi::PipelineHandle(bound.compute) : rhi::PipelineHandle(bound.ray_tracing);
+    bound.bind_groups = make_bind_groups(device, job, resources, job.pipelines[i], handle);
+  }
+}
+
 }  // namespace tandem::program

@@ -20,4 +20,7 @@ struct BoundPipeline {
 /// Each pipeline of the job, in their order. Throws rhi::Error, which names the shader or the pipeline.
 std::vector<BoundPipeline> make_pipelines(rhi::Device& device, const Job& job, const Resources& resources);
 
+/// Binds all pipelines anew, after a resource has been replaced.
+void bind_again(rhi::Device& device, const Job& job, const Resources& resources, std::vector<BoundPipeline>& pipelines);
+
 }  // namespace tandem::program

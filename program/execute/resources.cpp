@@ -90,12 +90,15 @@ rhi::TextureHandle make_image(rhi::Device& device, const Image& image) {
 
 }  // namespace
 
+rhi::BufferHandle make_buffer(rhi::Device& device, const Job& job, std::size_t index,
+                              std::span<const std::byte> bytes) {
+  return rhi::create_filled(device, bytes, usage_of(job, index), job.buffers[index].name);
+}
+
 Resources make_resources(rhi::Device& device, const Job& job) {
   Resources resources;
-  for (std::size_t i = 0; i < job.buffers.size(); ++i) {
-    const Buffer& buffer = job.buffers[i];
-    resources.buffers.push_back(rhi::create_filled(device, buffer.initial, usage_of(job, i), buffer.name));
-  }
+  for (std::size_t i = 0; i < job.buffers.size(); ++i)
+    resources.buffers.push_back(make_buffer(device, job, i, job.buffers[i].initial));
   for (const Image& image : job.images) resources.images.push_back(make_image(device, image));
   for (const rhi::SamplerDesc& sampler : job.samplers) resources.samplers.push_back(device.create_sampler(sampler));
   for (const BottomLevel& level : job.bottom_levels)

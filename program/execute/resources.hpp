@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <vector>
 
 #include "program/job/job.hpp"
@@ -19,5 +21,8 @@ struct Resources {
 
 /// All resources with their first contents. Not waited for. Throws rhi::Error, which names the one at fault.
 Resources make_resources(rhi::Device& device, const Job& job);
+
+/// A buffer of the job with these bytes. Not waited for.
+rhi::BufferHandle make_buffer(rhi::Device& device, const Job& job, std::size_t index, std::span<const std::byte> bytes);
 
 }  // namespace tandem::program

@@ -62,27 +62,18 @@ class FileIncluder : public glslang::TShader::Includer {
     if (!refusal_.empty()) return nullptr;
     std::vector<std::filesystem::path> folders = {std::filesystem::path(includer).parent_path()};
     folders.insert(folders.end(), options_.include_directories.begin(), options_.include_directories.end());
+    if (IncludeResult* const given = include_given(folders.front() / header, header, depth)) return given;
+    if (!refusal_.empty()) return nullptr;
     for (const std::filesystem::path& folder : folders) {
       const std::filesystem::path path = folder / header;
       std::error_code status_error;
       if (!std::filesystem::exists(path, status_error)) continue;
-      if (depth > deepest_include)
-        return refuse(path.string().append(": it is included by files in files, more than ") +
-                      std::to_string(deepest_include) + " deep; it may include itself");
-      auto included = std::make_unique<Included>();
+      if (depth > deepest_include) return refuse_depth(path.string());
       try {
-        included->text = read_bytes(path, most_included_bytes);
+        return include(path.string(), read_bytes(path, most_included_bytes));
       } catch (const tandem::Error& error) {
         return refuse(error.what());
       }
-      bytes_ += included->text.size();
-      if (included_.size() >= most_includes || bytes_ > most_included_bytes)
-        return refuse(std::to_string(most_includes).append(" files or ") + std::to_string(most_included_bytes >> 20) +
-                      " MiB of them are the most that a shader may include");
-      included->result =
-          std::make_unique<IncludeResult>(path.string(), included->text.data(), included->text.size(), nullptr);
-      included_.push_back(std::move(included));
-      return included_.back()->result.get();
     }
     return nullptr;
   }
@@ -98,6 +89,34 @@ class FileIncluder : public glslang::TShader::Includer {
     std::string text;
     std::unique_ptr<IncludeResult> result;
   };
+
+  /// One of the options' files; null when there is none of the name.
+  IncludeResult* include_given(const std::filesystem::path& beside, const char* header, size_t depth) {
+    for (const SourceFile& file : options_.files) {
+      if (file.path != header && std::filesystem::path(file.path).lexically_normal() != beside.lexically_normal())
+        continue;
+      if (depth > deepest_include) return refuse_depth(file.path);
+      return include(file.path, file.text);
+    }
+    return nullptr;
+  }
+
+  IncludeResult* include(const std::string& path, std::string text) {
+    bytes_ += text.size();
+    if (included_.size() >= most_includes || bytes_ > most_included_bytes)
+      return refuse(std::to_string(most_includes).append(" files or ") + std::to_string(most_included_bytes >> 20) +
+                    " MiB of them are the most that a shader may include");
+    auto included = std::make_unique<Included>();
+    included->text = std::move(text);
+    included->result = std::make_unique<IncludeResult>(path, included->text.data(), included->text.size(), nullptr);
+    included_.push_back(std::move(included));
+    return included_.back()->result.get();
+  }
+
+  IncludeResult* refuse_depth(const std::string& path) {
+    return refuse(path + ": it is included by files in files, more than " + std::to_string(deepest_include) +
+                  " deep; it may include itself");
+  }
 
   /// The compiler's own sentence would be that the file is not there.
   IncludeResult* refuse(std::string why) {

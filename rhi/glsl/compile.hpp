@@ -18,6 +18,12 @@ struct Define {
   std::string value;
 };
 
+/// A file that #include finds without there being one.
+struct SourceFile {
+  std::string path;  ///< as #include names it, or beside the file that includes it
+  std::string text;
+};
+
 /// The SPIR-V that glslang writes; each for the oldest Vulkan that takes it.
 enum class SpirvVersion { v1_0, v1_3, v1_4, v1_5, v1_6 };
 
@@ -25,7 +31,8 @@ struct CompileOptions {
   std::vector<Define> defines = {};
   SpirvVersion spirv = SpirvVersion::v1_5;
   std::vector<std::filesystem::path> include_directories =
-      {};                   ///< searched for #include "..." after the source's own folder
+      {};                              ///< searched for #include "..." after the source's own folder
+  std::vector<SourceFile> files = {};  ///< looked at before those on disk
   bool debug_info = false;  ///< keep names and line numbers, so that the CPU device can point a debugger at the GLSL
 };
 

@@ -5,6 +5,8 @@
 #include <limits>
 #include <type_traits>
 
+#include <glm/matrix.hpp>
+
 #include "rhi_cpu/kernel/atomics.hpp"
 #include "rhi_cpu/kernel/components.hpp"
 #include "rhi_cpu/kernel/half_conversion.hpp"
@@ -83,6 +85,16 @@ constexpr To convert_toward_zero(const From& from) {
         return is_beyond ? half::from_bits(static_cast<std::uint16_t>(nearest.bits() - 1)) : nearest;
       },
       from);
+}
+
+/// Computed in float and rounded once, as drivers do: a difference of products loses most of a half's bits otherwise.
+template <int size>
+inline half determinant(const glm::mat<size, size, half>& m) {
+  return half(glm::determinant(glm::mat<size, size, float>(m)));
+}
+template <int size>
+inline glm::mat<size, size, half> inverse(const glm::mat<size, size, half>& m) {
+  return glm::mat<size, size, half>(glm::inverse(glm::mat<size, size, float>(m)));
 }
 
 using f16vec2 = glm::vec<2, half>;

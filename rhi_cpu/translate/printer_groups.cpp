@@ -67,7 +67,8 @@ void Printer::set_up_groups() {
     if (type.basetype == Type::Struct && has_decoration(type.self, spv::DecorationBlock)) {
       has_workgroup_blocks_ = true;
       size = std::max(size, memory_extent(type_id, {.bytes = "", .resource = ""}));
-      ir.meta[id].decoration.alias = "own_group->memory";
+      // A pointer, not the array: what selects or stores it asks for its type.
+      ir.meta[id].decoration.alias = "(&own_group->memory[0])";
     } else {
       size = aligned(size) + value_layout(*this, type).size;
       ir.meta[id].decoration.alias = fmt::format("own_group->shared_{}", id);

@@ -45,6 +45,18 @@ TEST_CASE("JUnit counts what passed, failed and could not be done") {
   CHECK(std::string(nodes[2].child("error").text().get()) == "no such device");
 }
 
+TEST_CASE("JUnit says what was skipped") {
+  const std::vector<JunitCase> cases = {
+      {.group = "a.amber", .name = "cpu", .seconds = 0, .failures = {}, .error = {}, .skipped = "a graphics pipeline"},
+      {.group = "b.amber", .name = "cpu", .seconds = 0, .failures = {}, .error = {}}};
+  const pugi::xml_document document = parse(junit_xml("amber", cases));
+  const pugi::xml_node suite = document.child("testsuites").child("testsuite");
+  CHECK(suite.attribute("skipped").as_int() == 1);
+  CHECK(suite.attribute("failures").as_int() == 0);
+  const pugi::xml_node skipped = suite.child("testcase").child("skipped");
+  CHECK(std::string(skipped.attribute("message").value()) == "a graphics pipeline");
+}
+
 TEST_CASE("JUnit keeps any text that XML can hold, and marks what it cannot") {
   const std::string held = "<a href='x'>&amp; \"quoted\" ]]> \t\n\r\xc3\xa4 \xe2\x82\xac \xf0\x9f\x98\x80";
   // A control character, half a character, a surrogate, an overlong slash, a continuation without a beginning.

@@ -14,6 +14,7 @@ struct JunitCase {
   double seconds = 0;                 ///< that it took
   std::vector<std::string> failures;  ///< the sentences of the verdict; empty: it passed
   std::string error;                  ///< why there is no verdict; empty: there is one
+  std::string skipped = {};           ///< why it was not tried; empty: it was
 };
 
 /// A <testsuites> of one <testsuite>. What XML cannot hold (control characters, bytes that are no UTF-8) becomes

@@ -84,6 +84,20 @@ TEST_CASE("includes are found in the folders of the options") {
   CHECK_THROWS_AS(glsl::compile(source, rhi::ShaderStage::compute, "includes"), rhi::Error);
 }
 
+TEST_CASE("files that are given as text are included before those on disk, and may include each other") {
+  glsl::CompileOptions options;
+  options.files = {{"parts/a.glsl", "#include \"b.glsl\"\n"}, {"parts/b.glsl", "const uint value = 7u;\n"}};
+  const std::string source =
+      "#version 460\n#include \"parts/a.glsl\"\nlayout(binding = 0) buffer B { uint x; };\n"
+      "void main() { x = value; }\n";
+  CHECK_FALSE(glsl::compile(source, rhi::ShaderStage::compute, "given", options).empty());
+  options.files[1].text = "#include \"a.glsl\"\n";
+  CHECK_THROWS_WITH_AS(glsl::compile(source, rhi::ShaderStage::compute, "given", options),
+                       doctest::Contains("it may include itself"), rhi::Error);
+  options.files.pop_back();
+  CHECK_THROWS_AS(glsl::compile(source, rhi::ShaderStage::compute, "given", options), rhi::Error);
+}
+
 TEST_CASE("files that include each other without end are refused") {
   const test::ScratchFolder folder;
   glsl::CompileOptions options;

@@ -116,6 +116,80 @@ void main() {
   }
 }
 
+TEST_CASE("pointers to blocks of shared memory are values, also to the beginning") {
+  const Words spirv = tandem::test::assembled(R"(
+OpCapability Shader
+OpCapability VariablePointers
+OpCapability WorkgroupMemoryExplicitLayoutKHR
+OpExtension "SPV_KHR_workgroup_memory_explicit_layout"
+OpMemoryModel Logical GLSL450
+OpEntryPoint GLCompute %main "main" %index %b %low %high
+OpExecutionMode %main LocalSize 16 1 1
+OpDecorate %index BuiltIn LocalInvocationIndex
+OpDecorate %array ArrayStride 4
+OpDecorate %half ArrayStride 4
+OpDecorate %block Block
+OpDecorate %low_block Block
+OpDecorate %high_block Block
+OpMemberDecorate %block 0 Offset 0
+OpMemberDecorate %low_block 0 Offset 0
+OpMemberDecorate %high_block 0 Offset 64
+OpDecorate %low Aliased
+OpDecorate %high Aliased
+OpDecorate %b DescriptorSet 0
+OpDecorate %b Binding 0
+%void = OpTypeVoid
+%bool = OpTypeBool
+%signature = OpTypeFunction %void
+%uint = OpTypeInt 32 0
+%zero = OpConstant %uint 0
+%one = OpConstant %uint 1
+%two = OpConstant %uint 2
+%hundred = OpConstant %uint 100
+%sixteen = OpConstant %uint 16
+%semantics = OpConstant %uint 264
+%input = OpTypePointer Input %uint
+%index = OpVariable %input Input
+%array = OpTypeRuntimeArray %uint
+%block = OpTypeStruct %array
+%buffer = OpTypePointer StorageBuffer %block
+%b = OpVariable %buffer StorageBuffer
+%element = OpTypePointer StorageBuffer %uint
+%half = OpTypeArray %uint %sixteen
+%low_block = OpTypeStruct %half
+%high_block = OpTypeStruct %half
+%half_pointer = OpTypePointer Workgroup %half
+%low_pointer = OpTypePointer Workgroup %low_block
+%high_pointer = OpTypePointer Workgroup %high_block
+%word = OpTypePointer Workgroup %uint
+%low = OpVariable %low_pointer Workgroup
+%high = OpVariable %high_pointer Workgroup
+%main = OpFunction %void None %signature
+%entry = OpLabel
+%i = OpLoad %uint %index
+%odd = OpBitwiseAnd %uint %i %one
+%is_odd = OpIEqual %bool %odd %one
+%low_half = OpAccessChain %half_pointer %low %zero
+%high_half = OpAccessChain %half_pointer %high %zero
+%which = OpSelect %half_pointer %is_odd %low_half %high_half
+%own = OpAccessChain %word %which %i
+%value = OpIAdd %uint %i %hundred
+OpStore %own %value
+OpControlBarrier %two %two %semantics
+%low_word = OpAccessChain %word %low %zero %i
+%high_word = OpAccessChain %word %high %zero %i
+%low_value = OpLoad %uint %low_word
+%high_value = OpLoad %uint %high_word
+%picked = OpSelect %uint %is_odd %low_value %high_value
+%place = OpAccessChain %element %b %zero %i
+OpStore %place %picked
+OpReturn
+OpFunctionEnd
+)");
+  const Words words = run(*device_with(8), spirv, Words(16));
+  for (std::uint32_t i = 0; i < 16; ++i) CHECK(words[i] == 100 + i);
+}
+
 TEST_CASE("pointers into shared memory are values") {
   const Words spirv = tandem::test::assembled(R"(
 OpCapability Shader

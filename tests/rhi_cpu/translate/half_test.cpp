@@ -188,9 +188,15 @@ const std::vector<Ternary> ternary_functions = {
      [](double a, double b, double c) { return h(h(c * b) + h(c * c)) < 0 ? a : -a; }},
     {"(f16mat2x2(a, b, c, a) * f16vec2(b, c)).y", [](double a, double b, double c) { return h(b * b) + h(a * c); }},
     {"(f16vec2(a, b) * f16mat2x2(a, b, c, a)).y", [](double a, double b, double c) { return h(a * c) + h(b * a); }},
-    {"determinant(f16mat2x2(a, b, c, a))", [](double a, double b, double c) { return h(a * a) - h(c * b); }},
-    {"inverse(f16mat2x2(a, b, c, a))[0].x",
-     [](double a, double b, double c) { return a * h(1 / h(h(a * a) - h(c * b))); }},
+    // Rounded once: a difference of products loses most of a half's bits otherwise.
+    {"determinant(f16mat2x2(a, b, c, a))", [](double a, double b, double c) { return a * a - c * b; }, across_a_tie},
+    {"determinant(f16mat3x3(a, 0, 0, 0, b, c, 0, c, a))",
+     [](double a, double b, double c) {  // what is infinite makes the zeros count
+       return a * (b * a - c * c) - 0 * (0 * a - c * 0) + 0 * (0 * c - b * 0);
+     },
+     across_a_tie},
+    {"inverse(f16mat2x2(a, b, c, a))[0].x", [](double a, double b, double c) { return a / (a * a - c * b); },
+     across_a_tie},
     {"refract(f16vec2(a, b), f16vec2(b, c), c).x",
      [](double a, double b, double c) {
        const double cosine = h(h(b * a) + h(c * b));

@@ -1,0 +1,115 @@
+#include "program/lockstep/circumstances.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+
+#include "program/lockstep/comparison.hpp"
+#include "program/lockstep/ray_arbiter.hpp"
+
+namespace tandem::program {
+namespace {
+
+Judgement judgement(Cause cause, std::string reason) {
+  return {.cause = cause,
+          .wrong = cause == Cause::mismatch ? WrongDevice::unknown : WrongDevice::none,
+          .reason = std::move(reason)};
+}
+
+bool is_subgroup_input(int built_in) {
+  switch (built_in) {
+    case spv::BuiltInSubgroupSize:
+    case spv::BuiltInNumSubgroups:
+    case spv::BuiltInSubgroupId:
+    case spv::BuiltInSubgroupLocalInvocationId:
+    case spv::BuiltInSubgroupEqMask:
+    case spv::BuiltInSubgroupGeMask:
+    case spv::BuiltInSubgroupGtMask:
+    case spv::BuiltInSubgroupLeMask:
+    case spv::BuiltInSubgroupLtMask:
+      return true;
+    default:
+      return false;
+  }
+}
+
+bool is_subgroup_operation(spv::Op op) {
+  return (op >= spv::OpGroupNonUniformElect && op <= spv::OpGroupNonUniformQuadSwap) ||
+         op == spv::OpGroupNonUniformRotateKHR ||
+         (op >= spv::OpSubgroupBallotKHR && op <= spv::OpSubgroupReadInvocationKHR);
+}
+
+bool is_filtered(spv::Op op) {
+  return (op >= spv::OpImageSampleImplicitLod && op <= spv::OpImageSampleProjDrefExplicitLod) ||
+         op == spv::OpImageGather || op == spv::OpImageDrefGather;
+}
+
+/// The result against what it should be.
+Judgement against(const RecordedWords& expected, const Difference& difference, std::string reason) {
+  Judgement result = judgement(Cause::mismatch, std::move(reason));
+  const bool a = difference.a.words == expected.words, b = difference.b.words == expected.words;
+  result.wrong = a ? WrongDevice::b : b ? WrongDevice::a : WrongDevice::both;
+  result.expected = expected;
+  return result;
+}
+
+Judgement judge_load(const Walk& walk, const Difference& difference) {
+  const Module& module = walk.shader().module;
+  const Instruction& load = module.instructions[difference.instruction];
+  const std::uint32_t pointer = load.words[3], variable = walk.variable_of(pointer);
+  const auto found = module.definitions.find(variable);
+  if (found == module.definitions.end() || module.instructions[found->second].op != spv::OpVariable)
+    return judgement(Cause::mismatch, "the devices load other values");
+  const Instruction& declared = module.instructions[found->second];
+  const auto storage = static_cast<spv::StorageClass>(declared.words[3]);
+  const int built_in = built_in_of(module, variable);
+  if (is_subgroup_input(built_in)) return judgement(Cause::device_defined, "each device forms its own subgroups");
+  if (storage == spv::StorageClassInput) return judgement(Cause::mismatch, "an input has another value");
+  if (storage != spv::StorageClassFunction && storage != spv::StorageClassPrivate)
+    return judgement(Cause::mismatch, "memory holds another value");
+  const bool has_initializer = declared.words.size() > 4;
+  const std::optional<std::size_t> store = walk.last_store(pointer);
+  if (!store && !has_initializer && !walk.was_passed(variable))
+    return judgement(Cause::undefined, "nothing has been stored into the variable");
+  if (store && module.instructions[*store].words[1] == variable && pointer == variable)
+    if (const std::optional<RecordedWords> stored = walk.value_of(module.instructions[*store].words[2]))
+      return against(*stored, difference, "the variable holds another value than was stored");
+  return judgement(Cause::mismatch, "the variable holds another value");
+}
+
+/// Filters may weigh texels with as few as 4 bits of the coordinates' fractions (VkPhysicalDeviceLimits::
+/// subTexelPrecisionBits), and 8 on every device that we know of; a sum of weighted texels errs by as much.
+bool is_near(const Difference& difference) {
+  constexpr float bound = 0x1p-6f;
+  for (std::size_t i = 0; i < difference.a.words.size(); ++i) {
+    if (difference.a.components[i].kind != ComponentKind::floating) return false;
+    const float a = std::bit_cast<float>(difference.a.words[i]), b = std::bit_cast<float>(difference.b.words[i]);
+    if (!(std::fabs(a - b) <= bound * std::max({1.0f, std::fabs(a), std::fabs(b)}))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Judgement judge_by_circumstances(const Walk& walk, const Difference& difference, const Circumstances& circumstances) {
+  const Judgement& own = difference.judgement;
+  const Module& module = walk.shader().module;
+  const spv::Op op = module.instructions[difference.instruction].op;
+  if (difference.is_address) return judgement(Cause::device_defined, "an address");
+  if (op == spv::OpReadClockKHR) return judgement(Cause::device_defined, "a clock");
+  if (own.cause != Cause::mismatch || own.wrong != WrongDevice::unknown) return own;
+  if (circumstances.order_dependent.contains({difference.shader, difference.instruction}))
+    return judgement(Cause::order, "the result depends on the order of the invocations");
+  if (is_subgroup_operation(op) && !circumstances.same_subgroups)
+    return judgement(Cause::device_defined, "the devices' subgroups have other sizes");
+  if (is_filtered(op))
+    return is_near(difference) ? judgement(Cause::within_precision, "filters may round their weights")
+                               : judgement(Cause::mismatch, "more than filters may differ");
+  if (circumstances.rays != nullptr)
+    if (std::optional<Judgement> of_ray = circumstances.rays->judge(walk, difference)) return *of_ray;
+  if (op == spv::OpLoad) return judge_load(walk, difference);
+  return own;
+}
+
+}  // namespace tandem::program

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <utility>
+
+#include "program/cause/judge.hpp"
+#include "program/lockstep/walk.hpp"
+
+namespace tandem::program {
+
+struct Difference;
+class RayArbiter;
+
+/// An instruction: its shader, and its position in the module.
+using SiteKey = std::pair<const RecordedShader*, std::size_t>;
+
+/// What is known of a launch beside its instructions' operands.
+struct Circumstances {
+  std::set<SiteKey> order_dependent = {};  ///< give other results when the invocations run in another order
+  bool same_subgroups = true;              ///< both devices form subgroups of one size
+  const RayArbiter* rays = nullptr;        ///< decides about rays; null: nobody does
+};
+
+/// The judgement about a difference of an instruction whose operands do not determine its result: a load, an atomic, an
+/// image, a ray, a subgroup operation. Any other difference keeps its judgement.
+/// @param walk stands in front of the instruction
+Judgement judge_by_circumstances(const Walk& walk, const Difference& difference, const Circumstances& circumstances);
+
+}  // namespace tandem::program

@@ -1,0 +1,44 @@
+#include "program/record/contraction.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "program/record/components.hpp"
+#include "program/record/globals.hpp"
+
+namespace tandem::program {
+namespace {
+
+bool is_arithmetic(spv::Op op) {
+  return (op >= spv::OpFNegate && op <= spv::OpDot && op != spv::OpIAdd && op != spv::OpISub && op != spv::OpIMul) ||
+         op == spv::OpExtInst;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> without_contraction(const Module& module) {
+  std::vector<std::uint32_t> spirv(module.header.begin(), module.header.end());
+  const auto append = [&](const std::vector<std::uint32_t>& words) {
+    spirv.insert(spirv.end(), words.begin(), words.end());
+  };
+  std::unordered_set<std::uint32_t> decorated;
+  for (std::size_t i = 0; i < module.first_global; ++i) {
+    const std::vector<std::uint32_t>& words = module.instructions[i].words;
+    append(words);
+    if (module.instructions[i].op == spv::OpDecorate && words[2] == spv::DecorationNoContraction)
+      decorated.insert(words[1]);
+  }
+  for (std::size_t i = module.first_function; i < module.instructions.size(); ++i) {
+    const Instruction& instruction = module.instructions[i];
+    if (!is_arithmetic(instruction.op) || decorated.contains(instruction.result)) continue;
+    const auto components = components_of(module, instruction.type);
+    if (components && std::ranges::any_of(*components, [](const Component& component) {
+          return component.kind == ComponentKind::floating;
+        }))
+      append(encode(spv::OpDecorate, {instruction.result, spv::DecorationNoContraction}));
+  }
+  for (std::size_t i = module.first_global; i < module.instructions.size(); ++i) append(module.instructions[i].words);
+  return spirv;
+}
+
+}  // namespace tandem::program
