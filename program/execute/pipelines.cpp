@@ -173,7 +173,7 @@ void bind_again(rhi::Device& device, const Job& job, const Resources& resources,
     BoundPipeline& bound = pipelines[i];
     const rhi::PipelineHandle handle =
         bound.compute != nullptr ? rhi::PipelineHandle(bound.compute) : rhi::PipelineHandle(bound.ray_tracing);
-    bound.bind_groups = make_bind_groups(device, job, resources, job.pipelines[i], handle);
+    bound.bind_groups = make_bind_groups(device, resources, job.pipelines[i], handle);
   }
 }
 

@@ -85,7 +85,7 @@ std::string name_of(const Module& module, std::uint32_t id) {
       return text;
     }
   }
-  return "%" + std::to_string(id);
+  return std::string("%").append(std::to_string(id));
 }
 
 std::string describe_instruction(const Module& module, std::size_t instruction) {

@@ -56,7 +56,7 @@ struct Comparing {
                           .b = std::move(b),
                           .judgement = {}};
     difference.judgement = judge(module, module.instructions[i], difference.operands, difference.a, difference.b,
-              [&](std::uint32_t id) { return walk.value_of(id); });
+                                 [&](std::uint32_t id) { return walk.value_of(id); });
     difference.judgement = judge_by_circumstances(walk, difference, circumstances);
     return difference;
   }
