@@ -88,6 +88,8 @@ TEST_CASE("buffers come from lists and files of every kind, and macros change th
   check(" --buffer values=in.txt");
   scaling.folder.write("in.csv", "value\n5\n6\n7\n");
   check(" --buffer values=in.csv");
+  scaling.folder.write("3.csv", "5,6,7\n");
+  check(" --buffer values=3.csv:3");
   check(" -DTYPE=uint --buffer values=in.csv");
   const float floats[] = {5, 6, 7};
   scaling.folder.write("in.bin", std::string_view(reinterpret_cast<const char*>(floats), sizeof(floats)));

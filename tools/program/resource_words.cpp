@@ -97,7 +97,9 @@ Source take_source(const Setting& setting, std::vector<std::string>& parts) {
     }
     return source;
   }
-  if (is_value_list(first)) return {.kind = SourceKind::values, .values = program::value_words(first)};
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(setting.folder / first, error);
+  if (!is_file && is_value_list(first)) return {.kind = SourceKind::values, .values = program::value_words(first)};
   return {.kind = SourceKind::file, .file = setting.folder / first};
 }
 
