@@ -243,8 +243,9 @@ probe ssbo uint 0 4 >= 1
   CHECK(error("ssbo 0 subdata ivec5 0 1") == "x.amber:4:16: 'ivec5' is no type");
   CHECK(error("ssbo 0 subdata int8_t 0 300") == "x.amber:4:25: 300 is no int8");
   CHECK(error("probe ssbo int 0 0 = 1") == "x.amber:4:20: '=' is no comparison");
-  CHECK(error("compute 1 1") == "x.amber:4:12: a number of workgroups is expected, a whole number of at most "
-                                "4294967295, not the end of the script");
+  CHECK(error("compute 1 1") ==
+        "x.amber:4:12: a number of workgroups is expected, a whole number of at most "
+        "4294967295, not the end of the script");
 }
 
 TEST_CASE("a mutated script is parsed or refused in one sentence") {

@@ -66,9 +66,7 @@ uniform ubo 0 int 0 10
 uniform float 0 0.25
 compute 1 1 1
 probe ssbo vec3 1:2 0 == 10.25 20.25 )";
-  const auto outcome = [&](const std::string& last) {
-    return run(parse(text + last, "x.amber"), device);
-  };
+  const auto outcome = [&](const std::string& last) { return run(parse(text + last, "x.amber"), device); };
   CHECK(outcome("30.25 1 2 3").outcome == Outcome::passed);
   const Result result = outcome("30.5");
   CHECK(result.outcome == Outcome::failed);
