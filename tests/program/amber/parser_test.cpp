@@ -105,8 +105,8 @@ TEST_CASE("an error is one sentence with file, line and column") {
       {"BUFFER", "2:7: the buffer's name is expected, not the end of the script"},
       {"BUFFER b DATA_TYPE uint33 DATA 1 END", "2:20: 'uint33' is no type"},
       {"BUFFER b DATA_TYPE mat2x2<int32> DATA 1 END", "2:20: 'mat2x2<int32>' is no type"},
-      {"BUFFER b DATA_TYPE uint8 DATA 1 256 END", "2:33: 256 is no uint8"},
-      {"BUFFER b DATA_TYPE int8 DATA 1 -129 END", "2:32: -129 is no int8"},
+      {"BUFFER b DATA_TYPE uint8 SIZE 2 FILL 256", "2:38: 256 is no uint8"},
+      {"BUFFER b DATA_TYPE int8 SIZE 2 FILL -129", "2:37: -129 is no int8"},
       {"BUFFER b DATA_TYPE int32 DATA\n1 2.5\nEND", "3:3: 2.5 is no int32"},
       {"BUFFER b DATA_TYPE int32 DATA\n1 2", "3:4: DATA has no END"},
       {"BUFFER b DATA_TYPE int32 DATA x END", "2:31: a number is expected, not 'x'"},
@@ -173,6 +173,21 @@ TEST_CASE("comments, continued lines and strings are as Amber has them") {
       parsed("# comment\nBUFFER \\\n  b DATA_TYPE \\\r\n uint32 DATA # more\n 1, 2 # END\n 0x10 END\n");
   REQUIRE(script.job.buffers.size() == 1);
   CHECK(script.job.buffers[0].initial.size() == 12);
+}
+
+TEST_CASE("data that is too large keeps its lowest bits, as the CTS has it") {
+  const Script script = parsed("BUFFER b DATA_TYPE uint8 DATA 272 -1 END");
+  CHECK(script.job.buffers.at(0).initial == std::vector<std::byte>{std::byte{16}, std::byte{255}});
+}
+
+TEST_CASE("an image without a size has that of the framebuffer") {
+  const std::string text = compute_shader +
+                           "BUFFER picture FORMAT R8G8B8A8_UNORM\nPIPELINE compute painting\n  ATTACH add\n"
+                           "  BIND BUFFER picture AS storage_image DESCRIPTOR_SET 0 BINDING 0\n";
+  CHECK(parsed(text + "END").job.images.at(0).desc.size == std::array<std::uint32_t, 3>{250, 250, 1});
+  const Script script = parsed(text + "  FRAMEBUFFER_SIZE 8 4\nEND");
+  CHECK(script.job.images.at(0).desc.size == std::array<std::uint32_t, 3>{8, 4, 1});
+  CHECK(script.job.images.at(0).initial.size() == 128);
 }
 
 TEST_CASE("a word in a shader is no END unless it stands alone") {
