@@ -18,7 +18,10 @@ spv_target_env environment_of(const Script& script, const ShaderSource& source, 
   if (source.target_env.empty()) {
     // Amber's own default, unless the script says that it is of no such SPIR-V.
     const bool is_later = std::ranges::any_of(script.requirements, [](const Requirement& requirement) {
-      return requirement.kind == Requirement::Kind::device_extension && requirement.name == "VK_KHR_spirv_1_4";
+      return requirement.kind == Requirement::Kind::device_extension &&
+             (requirement.name == "VK_KHR_spirv_1_4" ||
+              // It extends SPIR-V 1.4.
+              requirement.name == "VK_KHR_workgroup_memory_explicit_layout");
     });
     return stage == rhi::ShaderStage::compute && !is_later ? SPV_ENV_UNIVERSAL_1_0 : SPV_ENV_UNIVERSAL_1_4;
   }

@@ -14,6 +14,7 @@ struct Address {
   std::uint32_t offset = 0;            ///< constant part of the distance to `bytes`
   std::uint32_t matrix_stride = 0;     ///< of the matrices there
   std::uint32_t component_stride = 0;  ///< of the vector there, 0: tight
+  std::uint32_t array_stride = 0;      ///< of the array that the place is an element of, 0: of none, or nobody knows
   bool row_major = false;
   bool varies = false;   ///< wide form: `bytes` are kernel::Addresses
   bool by_lane = false;  ///< wide form: `bytes` and `resource` are of the lane `lane`

@@ -94,8 +94,9 @@ void Printer::chain_in_buffer(const Instruction& i, Address address, std::size_t
   if (mode_ == Mode::lane) address.by_lane = true;
   for (; k < i.operand_count(); ++k) {
     const std::uint32_t index = i.operand(k);
+    address.array_stride = is_array(*type) ? get_decoration(type_id, spv::DecorationArrayStride) : 0;
     if (is_array(*type)) {
-      index_address(address, index, get_decoration(type_id, spv::DecorationArrayStride));
+      index_address(address, index, address.array_stride);
       type_id = type->parent_type;
     } else if (type->basetype == SPIRType::Struct) {
       const std::uint32_t member = get<SPIRConstant>(index).scalar();

@@ -1,5 +1,7 @@
 // Pointers into buffers as values: addresses that instructions pick, compare, pass on and count from.
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "rhi/spirv/names.hpp"
@@ -91,9 +93,13 @@ void Printer::print_pointer_relation(const Instruction& i) {
     return define(i, fmt::format("{}({} {} {})", type_name(i.result_type()), value(a), text, value(b)));
   }
   if (!is_buffer_pointer(a)) fail(rhi::instruction_name(i.op(), i.words()) + " of pointers that point into no buffer");
-  const std::string difference = fmt::format("({}) - ({})", pointer_value(a), pointer_value(b));
+  // Whatever lies there, the places are compared.
+  const Address place = address_of(a), other = address_of(b);
+  if (place.bytes.empty() || other.bytes.empty()) fail("a pointer to an array of buffers");
+  const std::string difference = fmt::format("({}) - ({})", printed(place), printed(other));
   if (i.op() != spv::OpPtrDiff) return define(i, difference + (i.op() == spv::OpPtrEqual ? " == 0" : " != 0"));
-  const std::uint32_t stride = get_decoration(expression_type_id(a), spv::DecorationArrayStride);
+  std::uint32_t stride = get_decoration(expression_type_id(a), spv::DecorationArrayStride);
+  if (stride == 0) stride = std::max(place.array_stride, other.array_stride);
   if (stride == 0) fail("OpPtrDiff of pointers without ArrayStride");
   define(i, fmt::format("{}(({}) / {})", type_name(i.result_type()), difference, stride));
 }

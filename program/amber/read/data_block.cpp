@@ -54,7 +54,8 @@ std::vector<Number> read_numbers(Parser& parser, Lexer& lexer, const Values& val
     if (token.kind != Token::Kind::number)
       parser.fail(position, fmt::format("a number is expected, not '{}'", token.text.substr(0, 60)));
     const ScalarType scalar = values.place(numbers.size() % values.scalars_per_element()).scalar;
-    if (!fits(token.number, scalar))
+    // Of an integer that is too large the lowest bits are stored: scripts of the CTS have such data.
+    if (token.number.floating && !fits(token.number, scalar))
       parser.fail(position, fmt::format("{} is no {}", token.text.substr(0, 60), name_of(scalar)));
     numbers.push_back(token.number);
   }
@@ -163,6 +164,7 @@ void fill_with_zeros(DraftData& data, std::uint64_t items) {
 void read_format_buffer(Parser& parser, DraftData& data) {
   set_format(parser, data);
   data.is_image = true;
+  data.of_framebuffer_size = true;
   data.size = {usual_framebuffer_size, usual_framebuffer_size, 1};
   for (Token word = parser.next(); !word.ends_line(); word = parser.next()) {
     if (word.is("MIP_LEVELS")) {

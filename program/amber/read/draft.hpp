@@ -35,7 +35,8 @@ struct DraftData {
   std::array<std::uint32_t, 3> size = {1, 1, 1};
   std::uint32_t level_count = 1;
   std::uint32_t samples = 1;
-  std::vector<std::byte> bytes;  ///< of the first level
+  std::vector<std::byte> bytes;      ///< of the first level
+  bool of_framebuffer_size = false;  ///< the size is that of the pipeline's framebuffer
   bool bound_as_image = false;
   bool bound_as_buffer = false;
   Position position;

@@ -126,6 +126,12 @@ Token Lexer::next() {
   return token;
 }
 
+std::string Lexer::take_lines_to(char first) {
+  const std::size_t begin = offset_;
+  while (offset_ < text_.size() && (position_.column != 1 || text_[offset_] != first)) advance();
+  return std::string(text_.substr(begin, offset_ - begin));
+}
+
 bool Lexer::take_block(std::string& block) {
   constexpr std::string_view terminator = "END";
   for (std::size_t at = text_.find(terminator, offset_); at != std::string_view::npos;

@@ -38,6 +38,8 @@ class Lexer {
   /// The text up to the word END, which is passed over too, from the next line on: a shader, which has comments of its
   /// own. False when there is no END; then nothing is passed over.
   bool take_block(std::string& block);
+  /// The lines before the next that begins with the character, or all that are left.
+  std::string take_lines_to(char first);
 
  private:
   void advance();

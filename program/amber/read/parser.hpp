@@ -86,6 +86,9 @@ void read_copy(Parser& parser, std::vector<DraftStep>& steps);
 void read_repeat(Parser& parser, std::vector<DraftStep>& steps);
 void read_expectation(Parser& parser, std::vector<DraftStep>& steps);
 
+/// A script of Amber's older language.
+Script parse_vkscript(std::string_view text, const std::filesystem::path& file);
+
 /// A command that may stand in REPEAT. False for any other word.
 bool read_step(Parser& parser, const Token& command, std::vector<DraftStep>& steps);
 

@@ -11,8 +11,8 @@ namespace {
 
 /// Commands of graphics pipelines, and those that only OpenCL C has.
 bool is_of_graphics(const Token& command) {
-  for (const std::string_view word : {"FRAMEBUFFER_SIZE", "VIEWPORT", "VERTEX_DATA", "INDEX_DATA", "POLYGON_MODE",
-                                      "PATCH_CONTROL_POINTS", "DEPTH", "STENCIL", "BLEND"})
+  for (const std::string_view word :
+       {"VIEWPORT", "VERTEX_DATA", "INDEX_DATA", "POLYGON_MODE", "PATCH_CONTROL_POINTS", "DEPTH", "STENCIL", "BLEND"})
     if (command.is(word)) return true;
   return false;
 }
@@ -118,13 +118,40 @@ void read_subgroup(Parser& parser, DraftPipeline& pipeline) {
   parser.end_line("END");
 }
 
+/// Images without a size of their own get that of the framebuffer of a pipeline that binds them.
+void set_framebuffer_size(Parser& parser, const DraftPipeline& pipeline, const std::array<std::uint32_t, 2>& size) {
+  for (const DraftBinding& binding : pipeline.bindings) {
+    if (binding.kind == DraftBinding::Kind::sampler || binding.kind == DraftBinding::Kind::acceleration_structure)
+      continue;
+    DraftData& data = parser.draft().data[binding.index];
+    if (!data.of_framebuffer_size) continue;
+    data.size = {size[0], size[1], 1};
+    data.bytes.assign(std::uint64_t{size[0]} * size[1] * data.layout.stride, std::byte{0});
+  }
+}
+
+std::array<std::uint32_t, 2> read_framebuffer_size(Parser& parser) {
+  constexpr std::uint32_t largest = 1 << 13;
+  std::array<std::uint32_t, 2> size = {};
+  for (std::uint32_t& side : size) {
+    const Position position = parser.lexer().position();
+    side = parser.whole_number32("a number of pixels");
+    if (side == 0 || side > largest) parser.fail(position, "a framebuffer has 1 to 8192 pixels a side");
+  }
+  parser.end_line("FRAMEBUFFER_SIZE");
+  return size;
+}
+
 void read_body(Parser& parser, DraftPipeline& pipeline) {
+  std::optional<std::array<std::uint32_t, 2>> framebuffer_size;
   for (Token command = parser.next_in_block("PIPELINE"); !command.is("END");
        command = parser.next_in_block("PIPELINE")) {
     if (command.is("ATTACH")) {
       read_attach(parser, pipeline);
     } else if (command.is("BIND")) {
       read_binding(parser, pipeline);
+    } else if (command.is("FRAMEBUFFER_SIZE")) {
+      framebuffer_size = read_framebuffer_size(parser);
     } else if (command.is("SUBGROUP")) {
       read_subgroup(parser, pipeline);
     } else if (command.is("SHADER_OPTIMIZATION")) {
@@ -142,6 +169,7 @@ void read_body(Parser& parser, DraftPipeline& pipeline) {
     }
   }
   parser.end_line("END");
+  if (framebuffer_size) set_framebuffer_size(parser, pipeline, *framebuffer_size);
   parser.draft().pipelines.push_back(std::move(pipeline));
 }
 

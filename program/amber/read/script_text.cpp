@@ -63,12 +63,7 @@ bool is_vkscript(std::string_view text) {
 }  // namespace
 
 Script parse(std::string_view text, const std::filesystem::path& file) {
-  Script script;
-  script.file = file;
-  if (is_vkscript(text)) {
-    script.unsupported = "VkScript, not AmberScript";
-    return script;
-  }
+  if (is_vkscript(text)) return parse_vkscript(text, file);
   Parser parser(text, file);
   if (!text.starts_with("#!amber")) parser.fail({}, "the first line is not #!amber");
   try {
@@ -76,6 +71,8 @@ Script parse(std::string_view text, const std::filesystem::path& file) {
       if (command.kind != Token::Kind::end_of_line) read_command(parser, command);
     return assemble(std::move(parser.draft()));
   } catch (const Unsupported& reason) {
+    Script script;
+    script.file = file;
     script.requirements = parser.draft().requirements;
     script.unsupported = reason.why;
     return script;

@@ -29,7 +29,7 @@ std::optional<Number> parse_number(std::string_view word);
 bool fits(const Number& number, ScalarType scalar);
 
 /// Writes the number into the first bytes, rounded to nearest even for a floating-point type.
-/// @pre fits(), and as many bytes as the scalar has
+/// @pre fits() (of a larger integer the lowest bits are written), and as many bytes as the scalar has
 void write(std::span<std::byte> bytes, ScalarType scalar, const Number& number);
 
 /// What the first bytes hold: exact for every type but 64-bit integers, whose `bits` are.

@@ -28,7 +28,7 @@ class Values {
 };
 
 /// The numbers as elements of the type, one after the other, with zeros between them. The last element may be given in
-/// part. @pre every number fits its scalar
+/// part. @pre every number fits its scalar, or is an integer
 std::vector<std::byte> bytes_of(std::span<const Number> numbers, const Values& values, std::uint32_t stride);
 
 }  // namespace tandem::program::amber

@@ -83,7 +83,8 @@ TEST_CASE("compiling fills in the SPIR-V, and errors have the line of the script
 TEST_CASE("what no device of ours runs is told, not refused") {
   CHECK(parsed("PIPELINE graphics g\nnonsense").unsupported == "a graphics pipeline (line 2)");
   CHECK(parsed("SHADER compute c OPENCL-C\nkernel\nEND").unsupported == "a shader in OpenCL C (line 2)");
-  CHECK(parse("[compute shader]\n", "x.amber").unsupported == "VkScript, not AmberScript");
+  CHECK(parse("[vertex shader]\n", "x.amber").unsupported == "a graphics pipeline (line 1)");
+  CHECK(parse("[compute shader]\nx\n[test]\nclear\n", "x.amber").unsupported == "the command 'clear' (line 4)");
   CHECK(parsed("BUFFER picture FORMAT R8G8B8A8_UNORM FILE PNG x.png").unsupported == "data from a PNG file (line 2)");
   CHECK(parsed(compute_shader +
                "IMAGE i FORMAT R8G8B8A8_UNORM DIM_2D WIDTH 2 HEIGHT 2 SAMPLES 4\nPIPELINE compute p\nATTACH add\n"
@@ -104,8 +105,8 @@ TEST_CASE("an error is one sentence with file, line and column") {
       {"BUFFER", "2:7: the buffer's name is expected, not the end of the script"},
       {"BUFFER b DATA_TYPE uint33 DATA 1 END", "2:20: 'uint33' is no type"},
       {"BUFFER b DATA_TYPE mat2x2<int32> DATA 1 END", "2:20: 'mat2x2<int32>' is no type"},
-      {"BUFFER b DATA_TYPE uint8 DATA 1 256 END", "2:33: 256 is no uint8"},
-      {"BUFFER b DATA_TYPE int8 DATA 1 -129 END", "2:32: -129 is no int8"},
+      {"BUFFER b DATA_TYPE uint8 SIZE 2 FILL 256", "2:38: 256 is no uint8"},
+      {"BUFFER b DATA_TYPE int8 SIZE 2 FILL -129", "2:37: -129 is no int8"},
       {"BUFFER b DATA_TYPE int32 DATA\n1 2.5\nEND", "3:3: 2.5 is no int32"},
       {"BUFFER b DATA_TYPE int32 DATA\n1 2", "3:4: DATA has no END"},
       {"BUFFER b DATA_TYPE int32 DATA x END", "2:31: a number is expected, not 'x'"},
@@ -174,6 +175,21 @@ TEST_CASE("comments, continued lines and strings are as Amber has them") {
   CHECK(script.job.buffers[0].initial.size() == 12);
 }
 
+TEST_CASE("data that is too large keeps its lowest bits, as the CTS has it") {
+  const Script script = parsed("BUFFER b DATA_TYPE uint8 DATA 272 -1 END");
+  CHECK(script.job.buffers.at(0).initial == std::vector<std::byte>{std::byte{16}, std::byte{255}});
+}
+
+TEST_CASE("an image without a size has that of the framebuffer") {
+  const std::string text = compute_shader +
+                           "BUFFER picture FORMAT R8G8B8A8_UNORM\nPIPELINE compute painting\n  ATTACH add\n"
+                           "  BIND BUFFER picture AS storage_image DESCRIPTOR_SET 0 BINDING 0\n";
+  CHECK(parsed(text + "END").job.images.at(0).desc.size == std::array<std::uint32_t, 3>{250, 250, 1});
+  const Script script = parsed(text + "  FRAMEBUFFER_SIZE 8 4\nEND");
+  CHECK(script.job.images.at(0).desc.size == std::array<std::uint32_t, 3>{8, 4, 1});
+  CHECK(script.job.images.at(0).initial.size() == 128);
+}
+
 TEST_CASE("a word in a shader is no END unless it stands alone") {
   const Script script = parsed("SHADER compute c GLSL\nint BLEND, END_X;\nEND\nPIPELINE compute p\nATTACH c\nEND\n");
   CHECK(script.sources.at(0).text == "int BLEND, END_X;\n");
@@ -187,6 +203,64 @@ TEST_CASE("SPIRV-HEX is words or bytes") {
   };
   CHECK(words("07230203 00010000") == std::vector<std::uint32_t>{0x07230203, 0x00010000});
   CHECK(words("0x03, 0x02, 0x23, 0x07") == std::vector<std::uint32_t>{0x07230203});
+}
+
+TEST_CASE("VkScript becomes the same job and steps") {
+  const std::string text = R"(# comment
+[require]
+shaderInt64
+
+[compute shader]
+#version 450
+void main() {}
+
+[test]
+ssbo 1:2 subdata vec3 16 4 5 6
+ssbo 1:2 subdata vec3 0 1 2 3
+ssbo 0 8
+uniform ubo 3 int 4 -7
+uniform uint 4 9
+compute entrypoint main
+compute 2 3 4
+tolerance 0.5 1%
+probe ssbo vec3 1:2 0 ~= 1 2 3 4 5 6
+probe ssbo uint 0 4 >= 1
+)";
+  const Script script = parse(text, "x.amber");
+  CHECK(script.unsupported == "");
+  CHECK(script.requirements.at(0).name == "shaderInt64");
+  CHECK(script.sources.at(0).text == "#version 450\nvoid main() {}\n\n");
+  REQUIRE(script.job.buffers.size() == 4);
+  CHECK(script.job.buffers[0].initial.size() == 32);
+  CHECK(script.job.buffers[1].initial.size() == 32);  // 8 of the type that is probed
+  CHECK(script.job.buffers[2].initial.size() == 8);
+  const Pipeline& pipeline = script.job.pipelines.at(0);
+  CHECK(pipeline.push_constants.size() == 8);
+  REQUIRE(pipeline.bindings.size() == 3);
+  CHECK(pipeline.bindings[0].set == 1);
+  CHECK(pipeline.bindings[0].binding == 2);
+  CHECK(pipeline.bindings[1].set == 0);
+  CHECK(std::get<Dispatch>(script.job.commands.at(0)).workgroup_count == std::array<std::uint32_t, 3>{2, 3, 4});
+  REQUIRE(script.expectations.size() == 2);
+  CHECK(std::get<ValuesExpectation>(script.expectations[0].what).tolerances.size() == 2);
+  CHECK(script.expectations[1].position.line == 19);
+
+  const auto error = [](const std::string& command) -> std::string {
+    try {
+      parse("[compute shader]\nvoid main() {}\n[test]\n" + command, "x.amber");
+    } catch (const ScriptError& wrong) {
+      return wrong.what();
+    }
+    return "";
+  };
+  CHECK(error("ssbo x 3") == "x.amber:4:6: a binding is expected, not 'x'");
+  CHECK(error("ssbo 0:x 3") == "x.amber:4:7: ':x' is no binding");
+  CHECK(error("ssbo 0 subdata ivec5 0 1") == "x.amber:4:16: 'ivec5' is no type");
+  CHECK(error("ssbo 0 subdata int8_t 0 300") == "x.amber:4:25: 300 is no int8");
+  CHECK(error("probe ssbo int 0 0 = 1") == "x.amber:4:20: '=' is no comparison");
+  CHECK(error("compute 1 1") ==
+        "x.amber:4:12: a number of workgroups is expected, a whole number of at most "
+        "4294967295, not the end of the script");
 }
 
 TEST_CASE("a mutated script is parsed or refused in one sentence") {

@@ -53,6 +53,26 @@ TANDEM_DEVICE_TEST("what a shader leaves fails an expectation that it does not m
   CHECK(result.reasons[1] == "line 15: values is 1 at byte 4, expected not 1");
 }
 
+TANDEM_DEVICE_TEST("a VkScript runs, and fails where a probe finds something else") {
+  const std::string text = R"([compute shader]
+#version 450
+layout(set = 1, binding = 2) buffer Values { vec3 values[2]; };
+layout(binding = 0) uniform Factors { int factor; };
+layout(push_constant) uniform Constants { float more; };
+void main() { values[0] = values[1] * float(factor) + more; }
+[test]
+ssbo 1:2 subdata vec3 0 0 0 0 1 2 3
+uniform ubo 0 int 0 10
+uniform float 0 0.25
+compute 1 1 1
+probe ssbo vec3 1:2 0 == 10.25 20.25 )";
+  const auto outcome = [&](const std::string& last) { return run(parse(text + last, "x.amber"), device); };
+  CHECK(outcome("30.25 1 2 3").outcome == Outcome::passed);
+  const Result result = outcome("30.5");
+  CHECK(result.outcome == Outcome::failed);
+  CHECK(result.reasons.at(0) == "line 12: ssbo 1:2 is 30.25 at byte 8, expected 30.5");
+}
+
 TANDEM_DEVICE_TEST("one name may be an image for a pipeline and a buffer for another") {
   const Result result = run_text(R"(SHADER compute paint GLSL
 #version 450

@@ -202,4 +202,53 @@ OpDecorate %matrices Binding 3
                        tandem::rhi::Error);
 }
 
+TEST_CASE("pointers to matrices and their columns are compared, and pointers without a stride counted by their array") {
+  const std::string globals = R"(
+%vec2 = OpTypeVector %float 2
+%mat2 = OpTypeMatrix %vec2 2
+%vectors = OpTypeRuntimeArray %vec2
+%rows = OpTypeStruct %mat2 %mat2 %vectors
+%rows_pointer = OpTypePointer StorageBuffer %rows
+%matrix_pointer = OpTypePointer StorageBuffer %mat2
+%vector_pointer = OpTypePointer StorageBuffer %vec2
+%matrices = OpVariable %rows_pointer StorageBuffer
+)";
+  const std::string body = R"(
+%matrix0 = OpAccessChain %matrix_pointer %matrices %n0
+%matrix1 = OpAccessChain %matrix_pointer %matrices %n1
+%column0 = OpAccessChain %vector_pointer %matrices %n0 %n0
+%column0_again = OpAccessChain %vector_pointer %matrix0 %n0
+%column1 = OpAccessChain %vector_pointer %matrices %n0 %n1
+%vector1 = OpAccessChain %vector_pointer %matrices %n2 %n1
+%vector6 = OpAccessChain %vector_pointer %matrices %n2 %n6
+%same_matrix = OpPtrEqual %bool %matrix0 %matrix1
+%same_column = OpPtrEqual %bool %column0 %column0_again
+%other_column = OpPtrNotEqual %bool %column0 %column1
+%steps = OpPtrDiff %int %vector6 %vector1
+%r0 = OpSelect %float %same_matrix %two %zero
+%r1 = OpSelect %float %same_column %two %zero
+%r2 = OpSelect %float %other_column %two %zero
+%r3 = OpConvertSToF %float %steps
+)" + result(0, "%r0") + result(1, "%r1") +
+                           result(2, "%r2") + result(3, "%r3");
+  std::string text = module("", body, globals);
+  // An element of %vectors has half the bytes from it to the next.
+  text.insert(text.find("%void ="), R"(OpMemberDecorate %rows 0 Offset 0
+OpMemberDecorate %rows 0 MatrixStride 8
+OpMemberDecorate %rows 0 RowMajor
+OpMemberDecorate %rows 1 Offset 16
+OpMemberDecorate %rows 1 MatrixStride 8
+OpMemberDecorate %rows 1 ColMajor
+OpMemberDecorate %rows 2 Offset 32
+OpDecorate %vectors ArrayStride 16
+OpDecorate %rows Block
+OpDecorate %matrices DescriptorSet 0
+OpDecorate %matrices Binding 3
+)");
+  text.insert(text.find(" %kept\n") + 6, " %matrices");
+  std::vector<float> results(4, -1), matrices(40);
+  Kernel(assembled(text), {}).run({resource(results), resource(matrices)});
+  CHECK(results == std::vector<float>{0, 2, 2, 5});
+}
+
 }  // namespace
