@@ -242,7 +242,7 @@ void Printer::print_module() {
   if (is_wide()) statement("#define TANDEM_LANES ", options_.lanes);
   statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/wide.hpp" : "kernel.hpp", "\"");
   if (has_halves()) statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/halves.hpp" : "half.hpp", "\"");
-  if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
+  if (samples_) statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/" : "", "sampling.hpp\"");
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
   if (options_.watched) statement("#include \"rhi_cpu/kernel/watch.hpp\"");
   if (needs_group()) statement("#include \"rhi_cpu/kernel/workgroups.hpp\"");

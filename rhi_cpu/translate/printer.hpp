@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -333,6 +332,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_gather(const Instruction& i);
   void print_fetch(const Instruction& i);
   void print_level_count(const Instruction& i);
+  bool is_wide_image_operation(const Instruction& i);
+  std::string common_value(std::uint32_t id);
 
   // printer_extended.cpp: GLSL.std.450.
   void print_extended(const Instruction& i);
@@ -371,7 +372,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_set<std::uint32_t> composite_constants_;
   std::unordered_map<std::uint32_t, std::uint64_t> inlined_size_;  ///< instructions of a function with all its callees
   bool has_line_numbers_ = false;
-  bool samples_ = false;                ///< needs rhi_cpu/kernel/sampling.hpp
+  bool samples_ = false;                ///< needs sampling.hpp
   bool uses_subgroups_ = false;         ///< needs rhi_cpu/kernel/subgroups.hpp
   bool has_barriers_ = false;           ///< of the workgroup
   bool has_workgroup_blocks_ = false;   ///< shared variables are blocks, of bytes
@@ -390,8 +391,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::map<std::uint32_t, Definition> definitions_;  ///< of values
   std::unordered_set<std::uint32_t> escapes_;        ///< values that are used outside of the loop that defines them
   std::unordered_map<std::uint32_t, std::uint32_t> roots_;  ///< variable of a pointer
-  std::unordered_set<std::uint32_t> printed_functions_;
-  std::unordered_set<std::uint32_t> declared_phis_;
+  std::unordered_set<std::uint32_t> printed_functions_, declared_phis_;
   Mode mode_ = Mode::common;
   std::string mask_;               ///< of the block that is printed
   std::uint32_t lane_result_ = 0;  ///< the result whose lane is being printed

@@ -129,6 +129,13 @@ bool Printer::is_wide_operation(const Instruction& i) {
     }
     case spv::OpControlBarrier:
       return true;
+    case spv::OpImageRead:
+    case spv::OpImageWrite:
+    case spv::OpImageFetch:
+    case spv::OpImageGather:
+    case spv::OpImageSampleExplicitLod:
+    case spv::OpImageSampleProjExplicitLod:
+      return is_wide_image_operation(i);
     default:
       return is_subgroup_operation(i.op()) && !is_ballot_query(i.op());
   }

@@ -171,10 +171,12 @@ TANDEM_ROUNDING(sqrt, __builtin_sqrtf)
 TANDEM_ROUNDING(floor, __builtin_floorf)
 TANDEM_ROUNDING(ceil, __builtin_ceilf)
 TANDEM_ROUNDING(trunc, __builtin_truncf)
+TANDEM_ROUNDING(round_even, __builtin_rintf)  // nobody changes how this rounds
 #else
 TANDEM_OF_COMPONENTS_1(floor)
 TANDEM_OF_COMPONENTS_1(ceil)
 TANDEM_OF_COMPONENTS_1(trunc)
+TANDEM_OF_COMPONENTS_1(round_even)
 #endif
 #undef TANDEM_ROUNDING
 
