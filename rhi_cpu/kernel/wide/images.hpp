@@ -74,14 +74,14 @@ inline glm::vec<4, Lanes<C>> image_load(Mask mask, const Image* image, const Coo
     constexpr std::uint32_t bytes = layout_of(format).bytes;
     glm::vec<4, Lanes<C>> value;
     if constexpr (converts_in_lanes<C, format>) {
-      if (level.is_small(bytes)) {
+      if (level.is_small) {
         const auto texels = stored_texels<bytes>(level.texels, level.offsets(place.x, place.row, bytes));
         for (int i = 0; i < 4; ++i) value[i] = decoded_component<C, format>(texels, i);
         return kernel::select(place.inside, value, nothing);
       }
     }
     for (int i = 0; i < lane_count; ++i)
-      kernel::set_lane(value, i, decode<C, format>(level.texel(place.x[i], place.row[i], bytes)));
+      kernel::set_lane(value, i, decode<C, format>(level.texel(place.x[i], place.row[i])));
     return kernel::select(place.inside, value, nothing);
   }
 }
@@ -92,24 +92,23 @@ inline void image_store(Mask mask, const Image* image, const Coordinate& coordin
                         const glm::vec<4, Lanes<C>>& value) {
   const TexelLevel level(*image, 0);
   const TexelsOfLanes place(mask, level, coordinate);
-  const std::uint32_t bytes = texel_bytes<format>(image);
   if constexpr (format == TexelFormat::of_the_image) {
     const bool is_done =
-        level.is_small(bytes) && of_common_format<C>(level.format, [&]<TexelFormat known>() {
+        level.is_small && of_common_format<C>(level.format, [&]<TexelFormat known>() {
           store_texels(place.inside, level.texels, level.offsets(place.x, place.row, layout_of(known).bytes),
                        encoded<C, known>(value));
         });
     if (is_done) return;
     for (const int lane : EachLane(place.inside))
-      encoders<C>[level.format](level.texel(place.x[lane], place.row[lane], bytes), kernel::lane(value, lane));
+      encoders<C>[level.format](level.texel(place.x[lane], place.row[lane]), kernel::lane(value, lane));
   } else {
     if constexpr (converts_in_lanes<C, format>) {
-      if (level.is_small(bytes))
-        return store_texels(place.inside, level.texels, level.offsets(place.x, place.row, bytes),
-                            encoded<C, format>(value));
+      if (level.is_small)
+        return store_texels(place.inside, level.texels,
+                            level.offsets(place.x, place.row, layout_of(format).bytes), encoded<C, format>(value));
     }
     for (const int lane : EachLane(place.inside))
-      encode<C, format>(level.texel(place.x[lane], place.row[lane], bytes), kernel::lane(value, lane));
+      encode<C, format>(level.texel(place.x[lane], place.row[lane]), kernel::lane(value, lane));
   }
 }
 

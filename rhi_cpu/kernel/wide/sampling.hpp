@@ -105,57 +105,92 @@ struct NeighboursOfLanes {
   Floats weight;
 };
 
-/// What is the same for all texels that lanes read of one level.
+template <Shape shape>
+inline TexelLevel level_of_shape(const Image& image, std::uint32_t number) {
+  uvec3 size(image.size[0], image.size[1], image.size[2]);
+#pragma GCC unroll 3
+  for (int i = 0; i < sides_of(shape); ++i) size[i] = kernel::max(size[i] >> number, 1u);
+  return {image, number, size};
+}
+
+/// The layers that there are.
+template <Shape shape>
+inline Ints layers_of(const Image& image, const LookupOfLanes<shape>& lookup) {
+  if constexpr (!is_layered(shape)) return 0;
+  const std::uint32_t layers = image.size[shape == Shape::d1_array ? 1 : 2];
+  const float last = layers == 0 ? 0.0f : static_cast<float>(layers) - 1.0f;
+  return Ints(kernel::clamp(kernel::round_even(lookup.layer), Floats(0.0f), Floats(last)));
+}
+
+/// Reads texels of one level of an image, or of its border.
 template <typename C, Shape shape>
 struct LanesReader {
+  static constexpr int sides = sides_of(shape);
+  using Place = Ints[sides];
+
+  const Image& image;
   const Sampler& sampler;
-  const TexelLevel& level;
-  glm::vec<4, C> border;
+  const LookupOfLanes<shape>& lookup;
+  TexelLevel level;
   Ints layer;
 
+  LanesReader(const SampledImage& texture, const LookupOfLanes<shape>& where, std::uint32_t number)
+      : image(*texture.image),
+        sampler(*texture.sampler),
+        lookup(where),
+        level(level_of_shape<shape>(image, number)),
+        layer(layers_of(image, where)) {}
+
   int size(int side) const { return static_cast<int>(level.size[side]); }
-  Floats scaled(const LookupOfLanes<shape>& lookup, int side) const {
+  Floats scaled(int side) const {
     return sampler.unnormalized != 0 ? lookup.at[side] : lookup.at[side] * static_cast<float>(size(side));
   }
-  Ints wrapped(const Ints& texel, int side) const { return kernel::wrapped(texel, size(side), sampler.address[side]); }
-  NeighboursOfLanes neighbours(const LookupOfLanes<shape>& lookup, int side, int shift) const {
-    const Floats from = scaled(lookup, side) - 0.5f;
+  Ints wrapped(const Ints& texel, int side) const {
+    return kernel::wrapped(texel, size(side), sampler.address[side]);
+  }
+  NeighboursOfLanes neighbours(int side, int shift) const {
+    const Floats from = scaled(side) - 0.5f;
     const Floats whole = kernel::floor(from);
     const Ints low = float_to_signed<Ints>(whole);
     return {wrapped(low + shift, side), wrapped(low + 1 + shift, side), from - whole};
   }
+  Ints row(const Place& at) const {
+    if constexpr (shape == Shape::d1) return 0;
+    if constexpr (shape == Shape::d1_array) return layer;
+    if constexpr (shape == Shape::d2) return at[1];
+    if constexpr (shape == Shape::d2_array) return layer * size(1) + at[1];
+    if constexpr (shape == Shape::d3) return at[2] * size(1) + at[1];
+  }
   /// The lanes whose texel is of the border.
-  Mask is_outside(const Ints (&at)[sides_of(shape)]) const {
-    Ints outside = at[0];
-    for (int i = 1; i < sides_of(shape); ++i) outside |= at[i];
-    return outside < Ints(0);
+  Mask outside(const Place& at) const {
+    bool may_be = false;
+    Ints signs = 0;
+#pragma GCC unroll 3
+    for (int i = 0; i < sides; ++i) {
+      may_be |= sampler.address[i] == AddressMode::clamp_to_border;
+      signs |= at[i];
+    }
+    return may_be ? signs < Ints(0) : Mask(false);
   }
-  bool may_be_outside() const {
-    bool may = false;
-    for (int i = 0; i < sides_of(shape); ++i) may |= sampler.address[i] == AddressMode::clamp_to_border;
-    return may;
+  /// read(x, row), or in the lanes that are outside of_border(texel of the border).
+  template <typename Read, typename OfBorder>
+  auto read_or(const Place& at, const Read& read, const OfBorder& of_border) const {
+    const Mask is_outside = outside(at);
+    if (!any_of(is_outside)) [[likely]]
+      return read(Words(at[0]), Words(row(at)));
+    const auto inside = read(kernel::select(is_outside, Words(0u), Words(at[0])),
+                             kernel::select(is_outside, Words(0u), Words(row(at))));
+    return kernel::select(is_outside, of_border(border_texel<C>(image, sampler)), inside);
   }
-  /// read(x, row) of texels, and `of_border` in the lanes that are outside.
-  template <typename Value, typename Read>
-  Value read_or(const Ints (&at)[sides_of(shape)], const Value& of_border, const Read& read) const {
-    Ints x = at[0], row = 0;
-    if constexpr (shape == Shape::d1_array) row = layer;
-    if constexpr (shape == Shape::d2) row = at[1];
-    if constexpr (shape == Shape::d2_array) row = layer * size(1) + at[1];
-    if constexpr (shape == Shape::d3) row = at[2] * size(1) + at[1];
-    if (!may_be_outside()) return read(Words(x), Words(row));
-    const Mask outside = is_outside(at);
-    if (!any_of(outside)) return read(Words(x), Words(row));
-    x = kernel::select(outside, Ints(0), x);
-    row = kernel::select(outside, Ints(0), row);
-    return kernel::select(outside, of_border, read(Words(x), Words(row)));
+  glm::vec<4, Lanes<C>> operator()(const Place& at) const {
+    return read_or(
+        at, [&](Words x, Words row) { return texels_at<C>(level, x, row); },
+        [](const glm::vec<4, C>& border) { return kernel::spread(border); });
   }
-  glm::vec<4, Lanes<C>> operator()(const Ints (&at)[sides_of(shape)]) const {
-    return read_or(at, kernel::spread(border), [&](Words x, Words row) { return texels_at<C>(level, x, row); });
-  }
-  Lanes<C> component(const Ints (&at)[sides_of(shape)], int number) const {
-    return read_or(at, Lanes<C>(border[number]),
-                   [&](Words x, Words row) { return components_at<C>(level, x, row, number); });
+  Lanes<C> component(const Place& at, int number) const {
+    return read_or(
+        at, [&](Words x, Words row) { return components_at<C>(level, x, row, number); },
+        [&](const glm::vec<4, C>& border) { return Lanes<C>(border[number]); });
   }
 };
 
@@ -174,49 +209,37 @@ inline glm::vec<4, Lanes<C>> blended(const NeighboursOfLanes (&neighbours)[sides
   }
 }
 
+/// The filter over one level.
 template <typename C, Shape shape>
-inline glm::vec<4, Lanes<C>> filtered_level(const LookupOfLanes<shape>& lookup, Filter filter,
-                                            const LanesReader<C, shape>& reader) {
+inline glm::vec<4, Lanes<C>> filtered_level(const SampledImage& texture, const LookupOfLanes<shape>& lookup,
+                                            Filter filter, std::uint32_t number) {
   constexpr int sides = sides_of(shape);
+  const LanesReader<C, shape> reader(texture, lookup, number);
   Ints at[sides];
   if constexpr (std::is_floating_point_v<C>) {
     if (filter == Filter::linear) {
       NeighboursOfLanes neighbours[sides];
-      for (int i = 0; i < sides; ++i) neighbours[i] = reader.neighbours(lookup, i, lookup.shift[i]);
+#pragma GCC unroll 3
+      for (int i = 0; i < sides; ++i) neighbours[i] = reader.neighbours(i, lookup.shift[i]);
       return blended<sides - 1>(neighbours, at, reader);
     }
   }
+#pragma GCC unroll 3
   for (int i = 0; i < sides; ++i)
-    at[i] = reader.wrapped(float_to_signed<Ints>(kernel::floor(reader.scaled(lookup, i))) + lookup.shift[i], i);
+    at[i] = reader.wrapped(float_to_signed<Ints>(kernel::floor(reader.scaled(i))) + lookup.shift[i], i);
   return reader(at);
 }
 
-/// The layers that there are.
-template <Shape shape>
-inline Ints layers_of(const Image& image, const LookupOfLanes<shape>& lookup) {
-  if constexpr (!is_layered(shape)) return 0;
-  const std::uint32_t layers = image.size[shape == Shape::d1_array ? 1 : 2];
-  const float last = layers == 0 ? 0.0f : static_cast<float>(layers) - 1.0f;
-  return Ints(kernel::clamp(kernel::round_even(lookup.layer), Floats(0.0f), Floats(last)));
-}
-
-/// The filter over a level, and where weights are above 0 over the next one. The weight of lanes is 0 where the image
-/// has no further level.
+/// The filter over a level, and where weights are above 0 over the next one, which then exists.
 template <typename C, Shape shape>
 inline glm::vec<4, Lanes<C>> filtered_levels(const SampledImage& texture, const LookupOfLanes<shape>& lookup,
                                              Filter filter, std::uint32_t number, const Floats& weights) {
-  const Image& image = *texture.image;
-  const Sampler& sampler = *texture.sampler;
-  const glm::vec<4, C> border = border_texel<C>(image, sampler);
-  const Ints layer = layers_of(image, lookup);
-  const auto of_level = [&](std::uint32_t each) {
-    const TexelLevel level(image, each);
-    return filtered_level(lookup, filter, LanesReader<C, shape>{sampler, level, border, layer});
-  };
-  const auto fine = of_level(number);
+  glm::vec<4, Lanes<C>> fine = filtered_level<C>(texture, lookup, filter, number);
   if constexpr (std::is_floating_point_v<C>) {
-    const Mask blends = weights > Floats(0.0f);
-    if (any_of(blends)) return kernel::select(blends, fine + (of_level(number + 1) - fine) * weights, fine);
+    if (const Mask blends = weights > Floats(0.0f); any_of(blends)) {
+      const glm::vec<4, Lanes<C>> coarse = filtered_level<C>(texture, lookup, filter, number + 1);
+      fine = kernel::select(blends, fine + (coarse - fine) * weights, fine);
+    }
   }
   return fine;
 }
@@ -242,20 +265,15 @@ struct LevelsOfLanes {
   }
 };
 
-// What the translator calls.
-
+/// sample() where lanes may need different levels, or different filters.
 template <typename C, Shape shape>
-[[gnu::noinline]] inline glm::vec<4, Lanes<C>> sample(Mask mask, const SampledImage& texture,
-                                                      const LookupOfLanes<shape>& lookup) {
+[[gnu::noinline]] inline glm::vec<4, Lanes<C>> sample_levels(Mask mask, const SampledImage& texture,
+                                                             const LookupOfLanes<shape>& lookup) {
   const Image& image = *texture.image;
   const Sampler& sampler = *texture.sampler;
-  if (!lookup.have_details) {
-    const Levels levels = levels_of(image, sampler, lookup.detail, 0.0f);
-    return filtered_levels<C>(texture, lookup, levels.filter, levels.level, levels.weight);
-  }
-  // Lanes with the same filter and level together.
-  const LevelsOfLanes levels(image, sampler, lookup.details);
+  const LevelsOfLanes levels(image, sampler, lookup.have_details ? lookup.details : Floats(lookup.detail));
   glm::vec<4, Lanes<C>> result = kernel::spread(glm::vec<4, C>(C(0)));
+  // Lanes with the same filter and level together.
   for (Mask left = mask; any_of(left);) {
     const int first = std::countr_zero(bits_of(left));
     const bool magnifies = levels.magnifies[first];
@@ -269,26 +287,35 @@ template <typename C, Shape shape>
   return result;
 }
 
+// What the translator calls.
+
+template <typename C, Shape shape>
+[[gnu::noinline]] inline glm::vec<4, Lanes<C>> sample(Mask mask, const SampledImage& texture,
+                                                      const LookupOfLanes<shape>& lookup) {
+  const Sampler& sampler = *texture.sampler;
+  const bool is_one_level = texture.image->level_count == 1 && sampler.magnification == sampler.minification;
+  if (is_one_level) [[likely]]
+    return filtered_level<C>(texture, lookup, sampler.magnification, 0);
+  return sample_levels<C>(mask, texture, lookup);
+}
+
 template <typename C, Shape shape>
 [[gnu::noinline]] inline glm::vec<4, Lanes<C>> gather(const SampledImage& texture, const LookupOfLanes<shape>& lookup,
                                                       int component, const Array<ivec2, 4>* offsets = nullptr) {
-  const Image& image = *texture.image;
-  const TexelLevel level(image, 0);
-  const LanesReader<C, shape> reader{*texture.sampler, level, border_texel<C>(image, *texture.sampler),
-                                     layers_of(image, lookup)};
+  const LanesReader<C, shape> reader(texture, lookup, 0);
   glm::vec<4, Lanes<C>> values;
   if (offsets == nullptr) {
-    constexpr ivec2 steps[4] = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    const NeighboursOfLanes x = reader.neighbours(lookup, 0, lookup.shift[0]);
-    const NeighboursOfLanes y = reader.neighbours(lookup, 1, lookup.shift[1]);
-    for (int i = 0; i < 4; ++i)
-      values[i] = reader.component({steps[i].x != 0 ? x.high : x.low, steps[i].y != 0 ? y.high : y.low}, component & 3);
+    const NeighboursOfLanes x = reader.neighbours(0, lookup.shift[0]), y = reader.neighbours(1, lookup.shift[1]);
+    values[0] = reader.component({x.low, y.high}, component & 3);
+    values[1] = reader.component({x.high, y.high}, component & 3);
+    values[2] = reader.component({x.high, y.low}, component & 3);
+    values[3] = reader.component({x.low, y.low}, component & 3);
     return values;
   }
   for (int i = 0; i < 4; ++i) {
     const ivec2 step = (*offsets)[static_cast<std::size_t>(i)];
-    values[i] = reader.component({reader.neighbours(lookup, 0, lookup.shift[0] + step.x).low,
-                                  reader.neighbours(lookup, 1, lookup.shift[1] + step.y).low},
+    values[i] = reader.component({reader.neighbours(0, lookup.shift[0] + step.x).low,
+                                  reader.neighbours(1, lookup.shift[1] + step.y).low},
                                  component & 3);
   }
   return values;

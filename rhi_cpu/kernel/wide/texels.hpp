@@ -169,18 +169,23 @@ struct TexelLevel {
   std::byte* texels;
   uvec3 size;
   std::uint32_t format;
+  std::uint32_t bytes;  ///< of a texel
+  bool is_small;        ///< byte offsets have 32 bits
 
+  TexelLevel(const Image& image, std::uint32_t level, const uvec3& sides)
+      : texels(image.texels + image.level_offsets[level]),
+        size(sides),
+        format(image.format),
+        bytes(texel_layouts[image.format].bytes),
+        is_small((std::size_t{size.x} * size.y * size.z * bytes) >> 32 == 0) {}
   /// @param level one that the image has
-  TexelLevel(const Image& image, std::uint32_t level)
-      : texels(image.texels + image.level_offsets[level]), size(level_size(&image, level)), format(image.format) {}
+  TexelLevel(const Image& image, std::uint32_t level) : TexelLevel(image, level, level_size(&image, level)) {}
 
-  /// Whether byte offsets have 32 bits.
-  bool is_small(std::uint32_t bytes) const { return (std::size_t{size.x} * size.y * size.z * bytes) >> 32 == 0; }
   /// The byte offset of the texel at (x, row), where rows are counted through all layers.
-  Words offsets(const Words& x, const Words& row, std::uint32_t bytes) const {
-    return (row * Words(size.x) + x) * Words(bytes);
+  Words offsets(const Words& x, const Words& row, std::uint32_t texel_bytes) const {
+    return (row * Words(size.x) + x) * Words(texel_bytes);
   }
-  std::byte* texel(std::uint32_t x, std::uint32_t row, std::uint32_t bytes) const {
+  std::byte* texel(std::uint32_t x, std::uint32_t row) const {
     return texels + (std::size_t{row} * size.x + x) * bytes;
   }
 };
@@ -237,15 +242,14 @@ inline bool of_common_format(std::uint32_t format, const Function& with_format) 
 template <typename C>
 [[gnu::noinline]] inline glm::vec<4, Lanes<C>> texels_at(const TexelLevel& level, Words x, Words row) {
   glm::vec<4, Lanes<C>> value;
-  const std::uint32_t bytes = texel_layouts[level.format].bytes;
-  const bool is_done = level.is_small(bytes) && of_common_format<C>(level.format, [&]<TexelFormat format>() {
+  const bool is_done = level.is_small && of_common_format<C>(level.format, [&]<TexelFormat format>() {
                          const auto texels = stored_texels<layout_of(format).bytes>(
                              level.texels, level.offsets(x, row, layout_of(format).bytes));
                          for (int i = 0; i < 4; ++i) value[i] = decoded_component<C, format>(texels, i);
                        });
   if (!is_done)
     for (int i = 0; i < lane_count; ++i)
-      kernel::set_lane(value, i, decoders<C>[level.format](level.texel(x[i], row[i], bytes)));
+      kernel::set_lane(value, i, decoders<C>[level.format](level.texel(x[i], row[i])));
   return value;
 }
 
@@ -253,15 +257,14 @@ template <typename C>
 template <typename C>
 [[gnu::noinline]] inline Lanes<C> components_at(const TexelLevel& level, Words x, Words row, int component) {
   Lanes<C> value;
-  const std::uint32_t bytes = texel_layouts[level.format].bytes;
-  const bool is_done = level.is_small(bytes) && of_common_format<C>(level.format, [&]<TexelFormat format>() {
+  const bool is_done = level.is_small && of_common_format<C>(level.format, [&]<TexelFormat format>() {
                          const auto texels = stored_texels<layout_of(format).bytes>(
                              level.texels, level.offsets(x, row, layout_of(format).bytes));
                          value = decoded_component<C, format>(texels, component);
                        });
   if (!is_done)
     for (int i = 0; i < lane_count; ++i)
-      value.set(i, decoders<C>[level.format](level.texel(x[i], row[i], bytes))[component]);
+      value.set(i, decoders<C>[level.format](level.texel(x[i], row[i]))[component]);
   return value;
 }
 
