@@ -6,6 +6,7 @@
 
 #include "rhi_cpu/kernel/images.hpp"
 #include "rhi_cpu/kernel/wide/functions.hpp"
+#include "rhi_cpu/kernel/wide/levels.hpp"
 #include "rhi_cpu/kernel/wide/memory.hpp"
 #include "rhi_cpu/kernel/wide/texels.hpp"
 
@@ -61,28 +62,49 @@ template <typename C, TexelFormat format>
 inline constexpr bool converts_in_lanes = has_lanes(format) &&
                                           holds_integers(layout_of(format).coding) != std::is_floating_point_v<C>;
 
+/// Level 0, where a storage image is read and written; without texels where nothing is bound.
+template <TexelFormat format>
+inline TexelLevel storage_level(const Image* image) {
+  return {*image, 0, uvec3(image->size[0], image->size[1], image->size[2]), texel_bytes<format>(image)};
+}
+
+/// Texels of any format, from lane to lane.
+template <typename C, TexelFormat format>
+[[gnu::noinline]] inline glm::vec<4, Lanes<C>> decoded_by_lane(const TexelLevel& level, Words x, Words row) {
+  glm::vec<4, Lanes<C>> value;
+  for (int i = 0; i < lane_count; ++i) kernel::set_lane(value, i, decode<C, format>(level.texel(x[i], row[i])));
+  return value;
+}
+template <typename C, TexelFormat format>
+[[gnu::noinline]] inline void encode_by_lane(Mask mask, const TexelLevel& level, Words x, Words row,
+                                             const glm::vec<4, Lanes<C>>& value) {
+  for (const int lane : EachLane(mask)) {
+    std::byte* texel = level.texel(x[lane], row[lane]);
+    if constexpr (format == TexelFormat::of_the_image)
+      encoders<C>[level.format](texel, kernel::lane(value, lane));
+    else
+      encode<C, format>(texel, kernel::lane(value, lane));
+  }
+}
+
 /// imageLoad.
 template <typename C, TexelFormat format, typename Coordinate>
 inline glm::vec<4, Lanes<C>> image_load(Mask mask, const Image* image, const Coordinate& coordinate) {
-  TexelLevel level(*image, 0);
+  const TexelLevel level = storage_level<format>(image);
   const TexelsOfLanes place(mask, level, coordinate);
   if constexpr (format == TexelFormat::of_the_image) {
     return texels_of<C>(level, place);
   } else {
     const auto nothing = kernel::spread(nothing_of<C>(static_cast<std::uint32_t>(format)));
     if (!any_of(place.inside)) return nothing;
-    constexpr std::uint32_t bytes = layout_of(format).bytes;
-    glm::vec<4, Lanes<C>> value;
     if constexpr (converts_in_lanes<C, format>) {
-      if (level.is_small) {
+      if (level.is_small) [[likely]] {
+        constexpr std::uint32_t bytes = layout_of(format).bytes;
         const auto texels = stored_texels<bytes>(level.texels, level.offsets(place.x, place.row, bytes));
-        for (int i = 0; i < 4; ++i) value[i] = decoded_component<C, format>(texels, i);
-        return kernel::select(place.inside, value, nothing);
+        return kernel::select(place.inside, decoded<C, format>(texels), nothing);
       }
     }
-    for (int i = 0; i < lane_count; ++i)
-      kernel::set_lane(value, i, decode<C, format>(level.texel(place.x[i], place.row[i])));
-    return kernel::select(place.inside, value, nothing);
+    return kernel::select(place.inside, decoded_by_lane<C, format>(level, place.x, place.row), nothing);
   }
 }
 
@@ -90,26 +112,19 @@ inline glm::vec<4, Lanes<C>> image_load(Mask mask, const Image* image, const Coo
 template <typename C, TexelFormat format, typename Coordinate>
 inline void image_store(Mask mask, const Image* image, const Coordinate& coordinate,
                         const glm::vec<4, Lanes<C>>& value) {
-  const TexelLevel level(*image, 0);
+  const TexelLevel level = storage_level<format>(image);
   const TexelsOfLanes place(mask, level, coordinate);
+  const auto store = [&]<TexelFormat known>() {
+    store_texels(place.inside, level.texels, level.offsets(place.x, place.row, layout_of(known).bytes),
+                 encoded<C, known>(value));
+  };
   if constexpr (format == TexelFormat::of_the_image) {
-    const bool is_done =
-        level.is_small && of_common_format<C>(level.format, [&]<TexelFormat known>() {
-          store_texels(place.inside, level.texels, level.offsets(place.x, place.row, layout_of(known).bytes),
-                       encoded<C, known>(value));
-        });
-    if (is_done) return;
-    for (const int lane : EachLane(place.inside))
-      encoders<C>[level.format](level.texel(place.x[lane], place.row[lane]), kernel::lane(value, lane));
-  } else {
-    if constexpr (converts_in_lanes<C, format>) {
-      if (level.is_small)
-        return store_texels(place.inside, level.texels,
-                            level.offsets(place.x, place.row, layout_of(format).bytes), encoded<C, format>(value));
-    }
-    for (const int lane : EachLane(place.inside))
-      encode<C, format>(level.texel(place.x[lane], place.row[lane]), kernel::lane(value, lane));
+    if (level.is_small && of_common_format<C>(level.format, store)) return;
+  } else if constexpr (converts_in_lanes<C, format>) {
+    if (level.is_small) [[likely]]
+      return store.template operator()<format>();
   }
+  encode_by_lane<C, format>(place.inside, level, place.x, place.row, value);
 }
 
 /// texelFetch of one level for all lanes.
@@ -117,7 +132,7 @@ template <typename C, typename Coordinate>
 inline glm::vec<4, Lanes<C>> fetch(Mask mask, const Image* image, const Coordinate& coordinate, std::uint32_t level = 0,
                                    const ivec3& shift = ivec3(0)) {
   if (level >= image->level_count) return kernel::spread(nothing_of<C>(image->format));
-  const TexelLevel texels(*image, level);
+  const TexelLevel texels(*image, level, level_size(image, level));
   Coordinate at = coordinate;
   if constexpr (length_of<Coordinate> == 0)
     at += shift.x;

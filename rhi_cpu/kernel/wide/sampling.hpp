@@ -8,7 +8,7 @@
 
 #include "rhi_cpu/kernel/sampling.hpp"
 #include "rhi_cpu/kernel/wide/functions.hpp"
-#include "rhi_cpu/kernel/wide/images.hpp"
+#include "rhi_cpu/kernel/wide/levels.hpp"
 #include "rhi_cpu/kernel/wide/texels.hpp"
 
 /// Sampled images of all lanes at once: the twins of what kernel/sampling.hpp has, for one image, one sampler and
@@ -107,10 +107,10 @@ struct NeighboursOfLanes {
 
 template <Shape shape>
 inline TexelLevel level_of_shape(const Image& image, std::uint32_t number) {
-  uvec3 size(image.size[0], image.size[1], image.size[2]);
-#pragma GCC unroll 3
-  for (int i = 0; i < sides_of(shape); ++i) size[i] = kernel::max(size[i] >> number, 1u);
-  return {image, number, size};
+  const auto side = [&](int i) {
+    return i < sides_of(shape) ? kernel::max(image.size[i] >> number, 1u) : image.size[i];
+  };
+  return {image, number, uvec3(side(0), side(1), side(2))};
 }
 
 /// The layers that there are.
@@ -145,9 +145,7 @@ struct LanesReader {
   Floats scaled(int side) const {
     return sampler.unnormalized != 0 ? lookup.at[side] : lookup.at[side] * static_cast<float>(size(side));
   }
-  Ints wrapped(const Ints& texel, int side) const {
-    return kernel::wrapped(texel, size(side), sampler.address[side]);
-  }
+  Ints wrapped(const Ints& texel, int side) const { return kernel::wrapped(texel, size(side), sampler.address[side]); }
   NeighboursOfLanes neighbours(int side, int shift) const {
     const Floats from = scaled(side) - 0.5f;
     const Floats whole = kernel::floor(from);
@@ -187,10 +185,14 @@ struct LanesReader {
         at, [&](Words x, Words row) { return texels_at<C>(level, x, row); },
         [](const glm::vec<4, C>& border) { return kernel::spread(border); });
   }
-  Lanes<C> component(const Place& at, int number) const {
-    return read_or(
-        at, [&](Words x, Words row) { return components_at<C>(level, x, row, number); },
-        [&](const glm::vec<4, C>& border) { return Lanes<C>(border[number]); });
+  /// Texels at (x, y) of the neighbours, which those of a further side lie before. @return whether all are inside
+  bool square(const NeighboursOfLanes& x, const NeighboursOfLanes& y, const Place& at, SquareOfLanes& found) const {
+    Place low, high;
+#pragma GCC unroll 3
+    for (int i = 0; i < sides; ++i) low[i] = high[i] = at[i];
+    low[0] = x.low, low[1] = y.low, high[0] = x.high, high[1] = y.high;
+    found = {{Words(x.low), Words(x.high)}, {Words(row(low)), Words(row(high))}};
+    return !any_of(outside(low) || outside(high));
   }
 };
 
@@ -198,6 +200,9 @@ struct LanesReader {
 template <int side, typename C, Shape shape>
 inline glm::vec<4, Lanes<C>> blended(const NeighboursOfLanes (&neighbours)[sides_of(shape)],
                                      Ints (&at)[sides_of(shape)], const LanesReader<C, shape>& reader) {
+  if constexpr (side == 1)
+    if (SquareOfLanes square; reader.square(neighbours[0], neighbours[1], at, square)) [[likely]]
+      return blended_square(reader.level, square, neighbours[0].weight, neighbours[1].weight);
   if constexpr (side < 0) {
     return reader(at);
   } else {
@@ -303,20 +308,18 @@ template <typename C, Shape shape>
 [[gnu::noinline]] inline glm::vec<4, Lanes<C>> gather(const SampledImage& texture, const LookupOfLanes<shape>& lookup,
                                                       int component, const Array<ivec2, 4>* offsets = nullptr) {
   const LanesReader<C, shape> reader(texture, lookup, 0);
-  glm::vec<4, Lanes<C>> values;
+  const auto texel = [&](const Ints& x, const Ints& y) { return reader({x, y})[component & 3]; };
   if (offsets == nullptr) {
     const NeighboursOfLanes x = reader.neighbours(0, lookup.shift[0]), y = reader.neighbours(1, lookup.shift[1]);
-    values[0] = reader.component({x.low, y.high}, component & 3);
-    values[1] = reader.component({x.high, y.high}, component & 3);
-    values[2] = reader.component({x.high, y.low}, component & 3);
-    values[3] = reader.component({x.low, y.low}, component & 3);
-    return values;
+    if (SquareOfLanes square; reader.square(x, y, {}, square)) [[likely]]
+      return components_of_square<C>(reader.level, square, component & 3);
+    return {texel(x.low, y.high), texel(x.high, y.high), texel(x.high, y.low), texel(x.low, y.low)};
   }
+  glm::vec<4, Lanes<C>> values;
   for (int i = 0; i < 4; ++i) {
     const ivec2 step = (*offsets)[static_cast<std::size_t>(i)];
-    values[i] = reader.component({reader.neighbours(0, lookup.shift[0] + step.x).low,
-                                  reader.neighbours(1, lookup.shift[1] + step.y).low},
-                                 component & 3);
+    values[i] =
+        texel(reader.neighbours(0, lookup.shift[0] + step.x).low, reader.neighbours(1, lookup.shift[1] + step.y).low);
   }
   return values;
 }
