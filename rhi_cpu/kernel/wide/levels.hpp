@@ -10,30 +10,40 @@
 /// of the kernel's own code.
 namespace tandem::kernel {
 
-/// Calls with_format.operator()<format>() for a format that is common and has lanes; @return false for others.
-template <typename C, typename Function>
-inline bool of_common_format(std::uint32_t format, const Function& with_format) {
 #define TANDEM_FORMAT(name)                               \
   case TexelFormat::name:                                 \
     with_format.template operator()<TexelFormat::name>(); \
     return true;
+
+/// Calls with_format.operator()<format>() for one of the few formats that are worth long code of their own. @return
+/// false for others
+template <typename Function>
+inline bool of_frequent_format(std::uint32_t format, const Function& with_format) {
+  switch (static_cast<TexelFormat>(format)) {
+    TANDEM_FORMAT(r8_unorm)
+    TANDEM_FORMAT(rgba8_unorm)
+    TANDEM_FORMAT(rgba8_srgb)
+    TANDEM_FORMAT(rgba16_float)
+    TANDEM_FORMAT(r32_float)
+    TANDEM_FORMAT(rgba32_float)
+    default:
+      return false;
+  }
+}
+
+/// The same for all formats that are read and written at once, in components of type C; others are from lane to lane.
+template <typename C, typename Function>
+inline bool of_common_format(std::uint32_t format, const Function& with_format) {
   if constexpr (std::is_same_v<C, float>) {
     switch (static_cast<TexelFormat>(format)) {
-      TANDEM_FORMAT(r8_unorm)
       TANDEM_FORMAT(rg8_unorm)
-      TANDEM_FORMAT(rgba8_unorm)
-      TANDEM_FORMAT(rgba8_srgb)
       TANDEM_FORMAT(bgra8_unorm)
-      TANDEM_FORMAT(rgba16_unorm)
       TANDEM_FORMAT(r16_float)
       TANDEM_FORMAT(rg16_float)
-      TANDEM_FORMAT(rgba16_float)
-      TANDEM_FORMAT(r32_float)
-      TANDEM_FORMAT(d32_float)
       TANDEM_FORMAT(rg32_float)
-      TANDEM_FORMAT(rgba32_float)
+      TANDEM_FORMAT(d32_float)
       default:
-        return false;
+        return of_frequent_format(format, with_format);
     }
   } else if constexpr (std::is_same_v<C, std::uint32_t>) {
     switch (static_cast<TexelFormat>(format)) {
@@ -55,8 +65,8 @@ inline bool of_common_format(std::uint32_t format, const Function& with_format) 
         return false;
     }
   }
-#undef TANDEM_FORMAT
 }
+#undef TANDEM_FORMAT
 
 /// The texels at (x, row), in a level.
 template <typename C>
@@ -129,7 +139,7 @@ template <typename C>
     return low + (high - low) * between_rows;
   };
   const bool is_done =
-      level.is_small && of_common_format<float>(level.format, [&]<TexelFormat format>() {
+      level.is_small && of_frequent_format(level.format, [&]<TexelFormat format>() {
         constexpr std::uint32_t bytes = layout_of(format).bytes;
         const SquareOffsets<bytes> at(level, square);
         StoredTexels<bytes> texels[4];

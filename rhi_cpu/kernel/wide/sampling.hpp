@@ -216,8 +216,9 @@ inline glm::vec<4, Lanes<C>> blended(const NeighboursOfLanes (&neighbours)[sides
 
 /// The filter over one level.
 template <typename C, Shape shape>
-inline glm::vec<4, Lanes<C>> filtered_level(const SampledImage& texture, const LookupOfLanes<shape>& lookup,
-                                            Filter filter, std::uint32_t number) {
+[[gnu::noinline]] inline glm::vec<4, Lanes<C>> filtered_level(const SampledImage& texture,
+                                                              const LookupOfLanes<shape>& lookup, Filter filter,
+                                                              std::uint32_t number) {
   constexpr int sides = sides_of(shape);
   const LanesReader<C, shape> reader(texture, lookup, number);
   Ints at[sides];

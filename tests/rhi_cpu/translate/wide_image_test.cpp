@@ -50,6 +50,7 @@ constexpr Declaration declarations[] = {
     {"r11f_g11f_b10f", "image2D", "at.xy", TextureFormat::rg11b10_float},
     {"r32f", "image2DArray", "at", TextureFormat::r32_float, {5, 4, 3}},
     {"r32f", "image3D", "at", TextureFormat::r32_float, {5, 4, 3}},
+    {"rgba8", "image2D", "at.xy", TextureFormat::rgba8_unorm, {0, 0, 0}},  // as where nothing is bound
     {"r32f", "image1D", "at.x", TextureFormat::r32_float, {9, 1, 1}},
     {"r32f", "imageBuffer", "at.x", TextureFormat::r32_float, {9, 1, 1}},
     {"r32ui", "uimage2D", "at.xy", TextureFormat::r32_uint},
