@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <random>
@@ -18,13 +19,13 @@
 /// A shader as one invocation after the other and in lanes, for tests that both forms give the same bits.
 namespace tandem::test {
 
-/// The first one is the scalar form; one of the others has the registers of this machine.
+/// The first one is the scalar form. 8 lanes have the registers of this machine, 4 those that every x86-64 has.
 class Forms {
  public:
-  explicit Forms(const std::string& glsl) {
+  explicit Forms(const std::string& glsl, std::initializer_list<std::uint32_t> lanes = {8}) {
     add(glsl, 0, {});
-    add(glsl, 4, {});
-    add(glsl, 8, {"-march=native"});
+    for (const std::uint32_t each : lanes)
+      add(glsl, each, each == 8 ? std::vector<std::string>{"-march=native"} : std::vector<std::string>{});
   }
   std::size_t count() const { return kernels_.size(); }
   const Kernel& operator[](std::size_t i) const { return *kernels_[i]; }
