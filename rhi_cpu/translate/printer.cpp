@@ -246,6 +246,7 @@ void Printer::print_module() {
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
   if (options_.watched) statement("#include \"rhi_cpu/kernel/watch.hpp\"");
   if (needs_group()) statement("#include \"rhi_cpu/kernel/workgroups.hpp\"");
+  if (!shared_offsets_.empty()) statement("#include \"rhi_cpu/kernel/wide/shared.hpp\"");
   if (is_wide() && uses_subgroups_)
     statement("#include \"rhi_cpu/kernel/wide/together.hpp\"");
   else if (needs_lanes())

@@ -190,14 +190,12 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string place_words() const;
   /// The k::Lane of the invocation, at that place.
   std::string lane() const;
-  /// gl_SubgroupInvocationID.
-  std::string lane_number() const;
+  std::string lane_number() const;  ///< gl_SubgroupInvocationID
   void print_mark(const Instruction& i);
   void print_subgroup_operation(const Instruction& i);
   void print_subgroup_arithmetic(const Instruction& i, const char* function, Sign sign);
   void print_ballot_count(const Instruction& i);
-  /// "" for what is none of a subgroup.
-  std::string subgroup_built_in(spv::BuiltIn built_in);
+  std::string subgroup_built_in(spv::BuiltIn built_in);  ///< "" for what is none of a subgroup
 
   // printer_composites.cpp: calls, and values made of values.
   void print_call(const Instruction& i);
@@ -283,6 +281,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string bounds(const Address& address) const;
   void print_store_in_rows(const Instruction& i);
   void print_wide_call(const Instruction& i);
+  void keep_shared_offsets(const Instruction& i);
 
   // printer_wide_flow.cpp: control flow in the wide form.
   struct WidePrinting;
@@ -390,7 +389,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   Uniformity uniformity_;
   std::map<std::uint32_t, Definition> definitions_;  ///< of values
   std::unordered_set<std::uint32_t> escapes_;        ///< values that are used outside of the loop that defines them
-  std::unordered_map<std::uint32_t, std::uint32_t> roots_;  ///< variable of a pointer
+  std::unordered_map<std::uint32_t, std::uint32_t> roots_;         ///< variable of a pointer
+  std::unordered_map<std::uint32_t, std::string> shared_offsets_;  ///< of pointers to shared elements
   std::unordered_set<std::uint32_t> printed_functions_, declared_phis_;
   Mode mode_ = Mode::common;
   std::string mask_;               ///< of the block that is printed
