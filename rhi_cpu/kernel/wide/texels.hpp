@@ -156,7 +156,7 @@ inline void store_texels(Mask mask, std::byte* data, const Words& offsets, const
 }
 
 /// What code / (2^bits - 1) rounds to, for a code of 8 or 16 bits: with c = code / 2^bits, c + c / (2^bits - 1). A test
-/// compares all codes.
+/// compares all of them.
 template <int bits>
 inline Floats unorm_of(const Words& codes) {
   constexpr float step = 1.0f / static_cast<float>(1u << bits), rest = step / unorm_scale(bits);

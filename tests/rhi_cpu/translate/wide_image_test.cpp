@@ -137,3 +137,31 @@ TEST_CASE("in lanes: storage images are read and written as by one invocation af
     }
   }
 }
+
+TEST_CASE("in lanes: every code of 8 and 16 bits becomes the number of the scalar form") {
+  const Forms forms(R"(
+layout(local_size_x = 32) in;
+layout(binding = 0, r16) uniform readonly image2D codes;
+layout(binding = 1, r16f) uniform readonly image2D halves;
+layout(binding = 2, r8) uniform readonly image2D bytes;
+layout(binding = 3) buffer Answers { uvec4 answers[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  ivec2 at = ivec2(i & 255u, i >> 8);
+  answers[i] = floatBitsToUint(vec4(imageLoad(codes, at).x, imageLoad(halves, at).x, imageLoad(bytes, at).x, 0.0));
+})",
+                    {4, 8});
+  constexpr std::uint32_t count = 65536;
+  std::vector<std::uint16_t> words(count);
+  for (std::uint32_t i = 0; i < count; ++i) words[i] = static_cast<std::uint16_t>(i);
+  const tandem::kernel::Image codes = tandem::test::image_of(words, TextureFormat::r16_unorm, {256, 256, 1});
+  const tandem::kernel::Image halves = tandem::test::image_of(words, TextureFormat::r16_float, {256, 256, 1});
+  const tandem::kernel::Image bytes = tandem::test::image_of(words, TextureFormat::r8_unorm, {256, 256, 1});
+  std::vector<std::uint32_t> expected;
+  for (std::size_t form = 0; form < forms.count(); ++form) {
+    std::vector<std::uint32_t> answers(4 * count);
+    forms[form].run({resource_of(codes), resource_of(halves), resource_of(bytes), resource(answers)}, {count / 32});
+    if (form == 0) expected = answers;
+    CHECK((answers == expected));
+  }
+}
