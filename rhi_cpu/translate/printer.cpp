@@ -242,10 +242,11 @@ void Printer::print_module() {
   if (is_wide()) statement("#define TANDEM_LANES ", options_.lanes);
   statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/wide.hpp" : "kernel.hpp", "\"");
   if (has_halves()) statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/halves.hpp" : "half.hpp", "\"");
-  if (samples_) statement("#include \"rhi_cpu/kernel/sampling.hpp\"");
+  if (samples_) statement("#include \"rhi_cpu/kernel/", is_wide() ? "wide/" : "", "sampling.hpp\"");
   if (options_.robust) statement("#include \"rhi_cpu/kernel/robust.hpp\"");
   if (options_.watched) statement("#include \"rhi_cpu/kernel/watch.hpp\"");
   if (needs_group()) statement("#include \"rhi_cpu/kernel/workgroups.hpp\"");
+  if (!shared_offsets_.empty()) statement("#include \"rhi_cpu/kernel/wide/shared.hpp\"");
   if (is_wide() && uses_subgroups_)
     statement("#include \"rhi_cpu/kernel/wide/together.hpp\"");
   else if (needs_lanes())

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <string_view>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -191,14 +190,12 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string place_words() const;
   /// The k::Lane of the invocation, at that place.
   std::string lane() const;
-  /// gl_SubgroupInvocationID.
-  std::string lane_number() const;
+  std::string lane_number() const;  ///< gl_SubgroupInvocationID
   void print_mark(const Instruction& i);
   void print_subgroup_operation(const Instruction& i);
   void print_subgroup_arithmetic(const Instruction& i, const char* function, Sign sign);
   void print_ballot_count(const Instruction& i);
-  /// "" for what is none of a subgroup.
-  std::string subgroup_built_in(spv::BuiltIn built_in);
+  std::string subgroup_built_in(spv::BuiltIn built_in);  ///< "" for what is none of a subgroup
 
   // printer_composites.cpp: calls, and values made of values.
   void print_call(const Instruction& i);
@@ -284,6 +281,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::string bounds(const Address& address) const;
   void print_store_in_rows(const Instruction& i);
   void print_wide_call(const Instruction& i);
+  void keep_shared_offsets(const Instruction& i);
 
   // printer_wide_flow.cpp: control flow in the wide form.
   struct WidePrinting;
@@ -333,6 +331,8 @@ class Printer : public spirv_cross::CompilerGLSL {
   void print_gather(const Instruction& i);
   void print_fetch(const Instruction& i);
   void print_level_count(const Instruction& i);
+  bool is_wide_image_operation(const Instruction& i);
+  std::string common_value(std::uint32_t id);
 
   // printer_extended.cpp: GLSL.std.450.
   void print_extended(const Instruction& i);
@@ -371,7 +371,7 @@ class Printer : public spirv_cross::CompilerGLSL {
   std::unordered_set<std::uint32_t> composite_constants_;
   std::unordered_map<std::uint32_t, std::uint64_t> inlined_size_;  ///< instructions of a function with all its callees
   bool has_line_numbers_ = false;
-  bool samples_ = false;                ///< needs rhi_cpu/kernel/sampling.hpp
+  bool samples_ = false;                ///< needs sampling.hpp
   bool uses_subgroups_ = false;         ///< needs rhi_cpu/kernel/subgroups.hpp
   bool has_barriers_ = false;           ///< of the workgroup
   bool has_workgroup_blocks_ = false;   ///< shared variables are blocks, of bytes
@@ -389,9 +389,9 @@ class Printer : public spirv_cross::CompilerGLSL {
   Uniformity uniformity_;
   std::map<std::uint32_t, Definition> definitions_;  ///< of values
   std::unordered_set<std::uint32_t> escapes_;        ///< values that are used outside of the loop that defines them
-  std::unordered_map<std::uint32_t, std::uint32_t> roots_;  ///< variable of a pointer
-  std::unordered_set<std::uint32_t> printed_functions_;
-  std::unordered_set<std::uint32_t> declared_phis_;
+  std::unordered_map<std::uint32_t, std::uint32_t> roots_;         ///< variable of a pointer
+  std::unordered_map<std::uint32_t, std::string> shared_offsets_;  ///< of pointers to shared elements
+  std::unordered_set<std::uint32_t> printed_functions_, declared_phis_;
   Mode mode_ = Mode::common;
   std::string mask_;               ///< of the block that is printed
   std::uint32_t lane_result_ = 0;  ///< the result whose lane is being printed

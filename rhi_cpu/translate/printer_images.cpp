@@ -77,8 +77,8 @@ void Printer::print_image_read(const Instruction& i) {
   refuse_sample(i, 2);
   const Type& image = type_of(i.operand(0));
   const Type& result = get<Type>(i.result_type());
-  const std::string texel = fmt::format("k::image_load<{}, {}>({}, {})", texel_component(image), texel_format(image),
-                                        value(i.operand(0)), value(i.operand(1)));
+  const std::string texel = fmt::format("k::image_load<{}, {}>({}{}, {})", texel_component(image), texel_format(image),
+                                        lanes_argument(), value(i.operand(0)), value(i.operand(1)));
   define(i, result.vecsize == 1 ? texel + ".x" : fmt::format("{}({})", type_name(result), texel));
 }
 
@@ -89,8 +89,8 @@ void Printer::print_image_write(const Instruction& i) {
   const BaseType base = get<Type>(image.image.type).basetype;
   std::string texel = value_as(texel_id, base);
   for (std::uint32_t k = type_of(texel_id).vecsize; k < 4; ++k) texel += ", 0";
-  statement(fmt::format("k::image_store<{}, {}>({}, {}, {}({}));", scalar_name(base), texel_format(image),
-                        value(image_id), value(coordinate), vector_name(base, 4), texel));
+  statement(fmt::format("k::image_store<{}, {}>({}{}, {}, {}({}));", scalar_name(base), texel_format(image),
+                        lanes_argument(), value(image_id), value(coordinate), numbers_name(base, 4), texel));
 }
 
 void Printer::print_image_size(const Instruction& i) {

@@ -1,5 +1,7 @@
 // Sampled images and samplers.
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "rhi/spirv/names.hpp"
@@ -63,13 +65,39 @@ ImageOperands Printer::image_operands(const Instruction& i, std::size_t mask) co
 
 std::string Printer::lookup(const Instruction& i, std::size_t mask) {
   const ImageOperands operands = image_operands(i, mask);
-  std::string text = fmt::format("k::{}<{}>({})", is_projective(i.op()) ? "projected" : "lookup",
-                                 image_shape(type_of(i.operand(texture))), value(i.operand(coordinate)));
-  if (operands.detail != 0) text += fmt::format(".at_detail({})", value(operands.detail));
+  std::string text = fmt::format("k::{}{}<{}>({})", is_projective(i.op()) ? "projected" : "lookup",
+                                 mode_ == Mode::wide ? "_of_lanes" : "", image_shape(type_of(i.operand(texture))),
+                                 value(i.operand(coordinate)));
+  if (operands.detail != 0)
+    text +=
+        fmt::format(".at_detail({})", varies(operands.detail) ? value(operands.detail) : common_value(operands.detail));
   if (operands.dx != 0) text += fmt::format(".with_gradients({}, {})", value(operands.dx), value(operands.dy));
   if (operands.least_detail != 0) text += fmt::format(".not_finer_than({})", value(operands.least_detail));
-  if (operands.offset != 0) text += fmt::format(".shifted({})", value(operands.offset));
+  if (operands.offset != 0) text += fmt::format(".shifted({})", common_value(operands.offset));
   return text;
+}
+
+std::string Printer::common_value(std::uint32_t id) {
+  const Mode before = std::exchange(mode_, mode_ == Mode::wide ? Mode::common : mode_);
+  std::string text = value(id);
+  mode_ = before;
+  return text;
+}
+
+/// In lanes that have the image in common. What chooses texels for all lanes at once, and gradients, they have not got
+/// each its own.
+bool Printer::is_wide_image_operation(const Instruction& i) {
+  const Type& image = type_of(i.operand(texture));
+  const BaseType base = get<Type>(image.image.type).basetype;
+  if (varies(i.operand(texture))) return false;
+  if (base != SPIRType::Float && base != SPIRType::Int && base != SPIRType::UInt) return false;
+  if (i.op() == spv::OpImageRead || i.op() == spv::OpImageWrite) return true;
+  const bool is_gather = i.op() == spv::OpImageGather, is_fetch = i.op() == spv::OpImageFetch;
+  const ImageOperands operands = image_operands(i, is_gather ? 3 : 2);
+  const bool has_own_operands = operands.dx != 0 || operands.least_detail != 0 || varies(operands.offset) ||
+                                varies(operands.offsets) || (is_fetch && varies(operands.detail)) ||
+                                (is_gather && varies(i.operand(reference)));
+  return !has_own_operands && (is_fetch || image.image.dim != spv::DimCube);
 }
 
 std::string Printer::texel_component(const Type& image) const {
@@ -79,7 +107,7 @@ std::string Printer::texel_component(const Type& image) const {
 void Printer::print_sample(const Instruction& i) {
   samples_ = true;
   const Type& image = type_of(i.operand(texture));
-  define(i, fmt::format("k::sample<{}, {}>({}, {})", texel_component(image), image_shape(image),
+  define(i, fmt::format("k::sample<{}, {}>({}{}, {})", texel_component(image), image_shape(image), lanes_argument(),
                         value(i.operand(texture)), lookup(i, 2)));
 }
 
@@ -101,13 +129,13 @@ void Printer::print_gather(const Instruction& i) {
   samples_ = true;
   const Type& image = type_of(i.operand(texture));
   const std::uint32_t offsets = image_operands(i, 3).offsets;
-  const std::string more = offsets != 0 ? ", &" + value(offsets) : "";
+  const std::string more = offsets != 0 ? ", &" + common_value(offsets) : "";
   if (i.op() == spv::OpImageDrefGather)
     define(i, fmt::format("k::gather_compare<{}>({}, {}, {}{})", image_shape(image), value(i.operand(texture)),
                           lookup(i, 3), value(i.operand(reference)), more));
   else
     define(i, fmt::format("k::gather<{}, {}>({}, {}, int({}){})", texel_component(image), image_shape(image),
-                          value(i.operand(texture)), lookup(i, 3), value(i.operand(reference)), more));
+                          value(i.operand(texture)), lookup(i, 3), common_value(i.operand(reference)), more));
 }
 
 void Printer::print_fetch(const Instruction& i) {
@@ -115,9 +143,9 @@ void Printer::print_fetch(const Instruction& i) {
   const ImageOperands operands = image_operands(i, 2);
   std::string more;
   if (operands.detail != 0 || operands.offset != 0)
-    more += operands.detail != 0 ? fmt::format(", k::uint({})", value(operands.detail)) : ", 0u";
-  if (operands.offset != 0) more += fmt::format(", k::widened<k::ivec3>({})", value(operands.offset));
-  define(i, fmt::format("k::fetch<{}>({}, {}{})", texel_component(type_of(i.operand(texture))),
+    more += operands.detail != 0 ? fmt::format(", k::uint({})", common_value(operands.detail)) : ", 0u";
+  if (operands.offset != 0) more += fmt::format(", k::widened<k::ivec3>({})", common_value(operands.offset));
+  define(i, fmt::format("k::fetch<{}>({}{}, {}{})", texel_component(type_of(i.operand(texture))), lanes_argument(),
                         value(i.operand(texture)), value(i.operand(coordinate)), more));
 }
 

@@ -129,6 +129,13 @@ bool Printer::is_wide_operation(const Instruction& i) {
     }
     case spv::OpControlBarrier:
       return true;
+    case spv::OpImageRead:
+    case spv::OpImageWrite:
+    case spv::OpImageFetch:
+    case spv::OpImageGather:
+    case spv::OpImageSampleExplicitLod:
+    case spv::OpImageSampleProjExplicitLod:
+      return is_wide_image_operation(i);
     default:
       return is_subgroup_operation(i.op()) && !is_ballot_query(i.op());
   }
@@ -206,6 +213,7 @@ void Printer::print_wide_chain(const Instruction& i) {
     return print_access_chain(i);
   }
   if (!is_buffer_pointer(i.operand(0))) {
+    keep_shared_offsets(i);
     const Restored mode(mode_, Mode::lane);
     return print_access_chain(i);
   }
@@ -272,6 +280,10 @@ void Printer::print_wide_load(const Instruction& i) {
     const Restored mode(mode_, varies(pointer) ? Mode::lane : Mode::common);
     return print_load(i);
   }
+  if (const auto shared = shared_offsets_.find(pointer); shared != shared_offsets_.end()) {
+    const Restored mode(mode_, Mode::wide);
+    return define(i, fmt::format("k::load_shared<{}>({}, {})", narrow_name(type), mask_, shared->second));
+  }
   if (varies(pointer)) {
     return print_by_lane(i, [&] {
       const std::string place = place_at(pointer);
@@ -314,6 +326,11 @@ void Printer::print_wide_store(const Instruction& i) {
     if (differs) return print_by_lane(i, [&] { print_store(i); });
     const Restored mode(mode_, Mode::common);
     return print_store(i);
+  }
+  if (const auto shared = shared_offsets_.find(pointer); shared != shared_offsets_.end()) {
+    const Restored mode(mode_, Mode::wide);
+    return statement("k::store_shared<", narrow_name(type_of(stored)), ">(", mask_, ", ", shared->second, ", ",
+                     value(stored), ");");
   }
   if (varies(pointer))
     return print_by_lane(i, [&] {

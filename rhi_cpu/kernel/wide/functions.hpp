@@ -171,10 +171,12 @@ TANDEM_ROUNDING(sqrt, __builtin_sqrtf)
 TANDEM_ROUNDING(floor, __builtin_floorf)
 TANDEM_ROUNDING(ceil, __builtin_ceilf)
 TANDEM_ROUNDING(trunc, __builtin_truncf)
+TANDEM_ROUNDING(round_even, __builtin_rintf)  // nobody changes how this rounds
 #else
 TANDEM_OF_COMPONENTS_1(floor)
 TANDEM_OF_COMPONENTS_1(ceil)
 TANDEM_OF_COMPONENTS_1(trunc)
+TANDEM_OF_COMPONENTS_1(round_even)
 #endif
 #undef TANDEM_ROUNDING
 
@@ -227,6 +229,12 @@ requires(is_lanes<To>) inline To convert(const Lanes<From>& from) {
 template <typename To, typename From>
 requires(has_registers<From>&& std::is_same_v<To, Lanes<std::int32_t>>) inline To
     float_to_signed(const Lanes<From>& from) {
+#if defined(__AVX__) && TANDEM_LANES == 8
+  // What the instruction makes of numbers out of range is what is asked for.
+  if constexpr (std::is_same_v<From, float>) return To(__builtin_ia32_cvttps2dq256(from.of_lane));
+#elif defined(__SSE2__) && TANDEM_LANES == 4
+  if constexpr (std::is_same_v<From, float>) return To(__builtin_ia32_cvttps2dq(from.of_lane));
+#endif
   constexpr From limit = 2147483648.0f;
   const Mask inside = from >= -limit && from < limit;
   const Lanes<From> x = kernel::select(inside, from, Lanes<From>(-limit));

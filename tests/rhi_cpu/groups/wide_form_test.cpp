@@ -153,6 +153,50 @@ void main() {
   check_forms(glsl, words, 1);
 }
 
+TEST_CASE("elements of shared arrays, next to each other, the same, and in any order") {
+  const std::string glsl = R"(
+#extension GL_EXT_shader_explicit_arithmetic_types : require
+layout(local_size_x = 16, local_size_y = 4) in;
+layout(binding = 0) buffer B { uint b[]; };
+shared uint line[64];
+shared float square[4][16];
+shared vec3 vectors[64];
+shared double doubles[64];
+shared uint8_t bytes[64];
+shared struct { uint words[64]; } inside;
+uint of(uint at, bool twice) { return line[at] * (twice ? 2u : 1u); }
+void main() {
+  uint i = gl_LocalInvocationIndex, x = gl_LocalInvocationID.x, y = gl_LocalInvocationID.y, mine = b[i];
+  line[i] = mine;
+  square[y][x] = float(mine % 1000u);
+  vectors[63u - i].y = float(i);
+  vectors[i].x = 0.5;
+  doubles[i ^ 5u] = double(mine);
+  bytes[i] = uint8_t(mine);
+  inside.words[i] = ~mine;
+  barrier();
+  uint sum = line[63u - i] * 3u + line[(i + 1u) & 63u] * 5u + line[mine & 63u] * 7u + line[b[64] & 63u];
+  if (i % 3u != 0u) sum += of(i, mine > 7u);
+  for (uint k = 0u; k < (i & 3u); ++k) sum = sum * 31u + line[(i + k) & 63u];
+  float all = 0.0;
+  for (int k = 0; k < 16; ++k) all += square[y][k] * square[k & 3][x];
+  sum += uint(all) + uint(vectors[i].y + vectors[mine & 63u].x * 64.0) + uint(doubles[i]) + uint(bytes[i ^ 1u]);
+  sum ^= inside.words[(i * 7u) & 63u];
+  barrier();
+  line[mine & 15u] = i;
+  if ((mine & 16u) != 0u && i < 48u) line[16u + i] = sum;
+  barrier();
+  b[i] = sum;
+  b[65u + i] = line[i];
+}
+)";
+  Words words(129);
+  for (std::uint32_t i = 0; i < words.size(); ++i) words[i] = i * 0x9e3779b1u >> 7;
+  // Two invocations of a subgroup write one element, of which the last one stays; those of others come as they come.
+  for (std::uint32_t i = 0; i < 64; ++i) words[i] = (words[i] & ~15u) | (i / 8 * 2 + i % 2);
+  check_forms(glsl, words, 1);
+}
+
 TEST_CASE("pointers that differ between invocations are values") {
   const std::string glsl = R"(#version 460
 #extension GL_EXT_buffer_reference : require
