@@ -58,6 +58,38 @@ std::string scalar_constant(const Module& module, const Instruction& constant) {
   return "";
 }
 
+std::string member_name(const Module& module, std::uint32_t type, std::uint32_t member) {
+  for (std::size_t i = 0; i < module.first_global; ++i) {
+    const Instruction& instruction = module.instructions[i];
+    if (instruction.op == spv::OpMemberName && instruction.words[1] == type && instruction.words[2] == member)
+      return text_of(instruction, 3);
+  }
+  return "";
+}
+
+/// Where a chain of accesses leads: "ball.centre[1]", "values[i]" in a block without a name.
+std::string chain_name(const Module& module, const Instruction& chain) {
+  std::string text = name_of(module, chain.words[3]);
+  if (text.starts_with('%')) text = "";
+  const auto base = module.definitions.find(chain.words[3]);
+  std::uint32_t type = definition(module, module.instructions[base->second].type).words[3];
+  for (std::size_t i = 4; i < chain.words.size(); ++i) {
+    const std::string index = name_of(module, chain.words[i]);
+    const Instruction& of = definition(module, type);
+    if (of.op == spv::OpTypeStruct) {
+      const std::uint32_t member = definition(module, chain.words[i]).words[3];
+      std::string name = member_name(module, type, member);
+      if (name.empty()) name = index;
+      text += text.empty() ? name : fmt::format(".{}", name);
+      type = of.words[2 + member];
+    } else {
+      text += fmt::format("[{}]", index);
+      type = of.words[2];
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 SourcePlace source_of(const Module& module, std::size_t instruction) {
@@ -76,11 +108,7 @@ std::string name_of(const Module& module, std::uint32_t id) {
     if (definition.op == spv::OpConstant)
       if (std::string text = scalar_constant(module, definition); !text.empty()) return text;
     if (definition.op == spv::OpAccessChain || definition.op == spv::OpInBoundsAccessChain) {
-      std::string text = name_of(module, definition.words[3]);
-      if (text.starts_with('%')) text = "";  // a block without a name
-      for (std::size_t i = 4; i < definition.words.size(); ++i)
-        text += fmt::format("[{}]", name_of(module, definition.words[i]));
-      return text;
+      return chain_name(module, definition);
     }
   }
   return fmt::format("%{}", id);

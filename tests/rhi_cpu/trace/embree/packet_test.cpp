@@ -22,7 +22,9 @@ Soup random_soup(std::mt19937& random) {
     Triangle& triangle = geometry.triangles.emplace_back();
     for (std::size_t k = 0; k < triangle.size(); ++k) triangle[k] = uniform(random);
   }
-  return Soup{{{geometry}}, {instance_of(0), instance_of(0)}};
+  rhi::InstanceDesc moved = instance_of(0);  // where two instances coincide, each may answer
+  moved.object_to_world[0][3] = 0.125f;
+  return Soup{{{geometry}}, {instance_of(0), moved}};
 }
 
 RayPacket random_packet(std::mt19937& random, std::uint32_t count) {
