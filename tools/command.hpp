@@ -15,11 +15,9 @@ using Action = std::function<int()>;
 namespace exit_code {
 inline constexpr int success = 0;
 inline constexpr int differ =
-    1;  ///< the images differ (diff, matrix, gallery, suite); results do (run); a mismatch (explain)
-inline constexpr int failed =
-    1;  ///< `conformance`, `bench --kernels`: a device is wrong; `run --check`: one cannot run it
-inline constexpr int differ = 1;  ///< the images differ (diff, matrix, gallery, suite); a mismatch (explain)
-inline constexpr int failed = 1;  ///< `tandem conformance`, `amber`, `bench --kernels`: a device is wrong
+    1;  ///< the images or results differ (diff, matrix, gallery, suite, run); a mismatch (explain)
+/// `conformance`, `amber`, `bench --kernels`: a device is wrong; `run --check`: one cannot run the shader.
+inline constexpr int failed = 1;
 inline constexpr int error = 2;
 inline constexpr int explained = 3;  ///< the images differ, but for reasons that the scene owns (diff, gallery, suite)
 inline constexpr int interrupted = 130;  ///< as shells report a program ended by Ctrl-C
@@ -37,6 +35,8 @@ void add_devices_command(CLI::App& app, Action& action);
 void add_render_command(CLI::App& app, Action& action);
 void add_diff_command(CLI::App& app, Action& action);
 void add_explain_command(CLI::App& app, Action& action);
+/// `explain` of shaders that are not the path tracer's, in the place of the command above.
+void add_program_explain_command(CLI::App& app, Action& action);
 void add_generate_command(CLI::App& app, Action& action);
 void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);

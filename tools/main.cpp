@@ -5,6 +5,7 @@
 #include <new>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "tools/options/option_words.hpp"
 #include "tools/output/interruption.hpp"
 #include "tools/output/print.hpp"
+#include "tools/program/explained_job.hpp"
 
 namespace {
 
@@ -26,6 +28,13 @@ int fail(std::string sentence, int code = exit_code::error) {
   return code;
 }
 
+/// Whether a word of the command line is a shader, a script, or a job of several.
+bool names_program(std::span<char* const> words) {
+  return std::ranges::any_of(words, [](std::string_view word) {
+    return word == "--job" || word.starts_with("--job=") || program_run::is_program_file(word);
+  });
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Renders one ray-tracing shader on Vulkan and on the CPU, and compares the images bit by bit.",
                "tandem");
@@ -33,12 +42,8 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit code: 0 success, or the results agree; 1 they differ (diff, matrix, gallery, suite, run) or a device is\n"
-      "wrong (explain, conformance, bench); 2 any error, with one sentence on standard error; 3 the images differ for "
-      "Exit code: 0 success, or the images agree; 1 the images differ (diff, matrix, gallery, suite) or a device is\n"
-      "wrong (explain, conformance, bench, amber); 2 any error, with one sentence on standard error; 3 the images "
-      "differ for "
-      "reasons\n"
-      "that the scene owns (diff, gallery, suite); 130 interrupted.\n"
+      "wrong (explain, conformance, bench, amber); 2 any error, with one sentence on standard error; 3 the images\n"
+      "differ for reasons that the scene owns (diff, gallery, suite); 130 interrupted.\n"
       "Environment variables:\n"
       "  TANDEM_CACHE_DIR     Folder of shaders compiled for the CPU devices [$XDG_CACHE_HOME/tandem, "
       "~/.cache/tandem]\n"
@@ -51,7 +56,11 @@ int run(int argc, char** argv) {
   add_render_command(app, action);
   add_run_command(app, action);
   add_diff_command(app, action);
-  add_explain_command(app, action);
+  // A scene and a shader have other options, and the same question.
+  if (names_program(std::span(argv, static_cast<std::size_t>(argc))))
+    add_program_explain_command(app, action);
+  else
+    add_explain_command(app, action);
   add_generate_command(app, action);
   add_gallery_command(app, action);
   add_bench_command(app, action);

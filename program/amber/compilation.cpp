@@ -67,8 +67,9 @@ std::string one_line(std::string_view text) {
 }
 
 std::vector<std::uint32_t> compile_glsl(const Script& script, const ShaderSource& source, const Shader& shader,
-                                        spv_target_env environment) {
+                                        spv_target_env environment, bool debug_info) {
   glsl::CompileOptions options;
+  options.debug_info = debug_info;
   options.spirv = version_of(environment);
   options.include_directories = {script.file.parent_path()};
   for (const VirtualFile& file : script.virtual_files) options.files.push_back({file.path, file.text});
@@ -114,12 +115,13 @@ std::vector<std::uint32_t> optimize(const Script& script, const ShaderSource& so
   return optimized;
 }
 
-std::vector<std::uint32_t> compile_shader(const Script& script, const ShaderSource& source, const Shader& shader) {
+std::vector<std::uint32_t> compile_shader(const Script& script, const ShaderSource& source, const Shader& shader,
+                                          bool debug_info) {
   const spv_target_env environment = environment_of(script, source, shader.stage);
   std::vector<std::uint32_t> words;
   switch (source.language) {
     case Language::glsl:
-      words = compile_glsl(script, source, shader, environment);
+      words = compile_glsl(script, source, shader, environment, debug_info);
       break;
     case Language::spirv_assembly:
       words = assemble_spirv(script, source, shader, environment);
@@ -137,9 +139,9 @@ std::vector<std::uint32_t> compile_shader(const Script& script, const ShaderSour
 
 }  // namespace
 
-void compile(Script& script) {
+void compile(Script& script, bool debug_info) {
   for (std::size_t i = 0; i < script.sources.size(); ++i)
-    script.job.shaders[i].spirv = compile_shader(script, script.sources[i], script.job.shaders[i]);
+    script.job.shaders[i].spirv = compile_shader(script, script.sources[i], script.job.shaders[i], debug_info);
 }
 
 }  // namespace tandem::program::amber

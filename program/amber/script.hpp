@@ -72,6 +72,7 @@ Script parse(std::string_view text, const std::filesystem::path& file);
 Script read(const std::filesystem::path& file);
 
 /// Compiles the shaders into the job. Throws ScriptError with the place of the shader's declaration.
-void compile(Script& script);
+/// @param debug_info GLSL keeps names and line numbers, which are the script's
+void compile(Script& script, bool debug_info = false);
 
 }  // namespace tandem::program::amber

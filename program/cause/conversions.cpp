@@ -16,9 +16,10 @@ Permitted float_to_integer(const Call& call, const Scalar& like, const Scalar& o
   };
   Permitted result = exactly_this({like.kind, like.width, bits_of(value), operand.undefined});
   if (operand.width == 32 && is_decorated(call.module, call.instruction.result, spv::DecorationRelaxedPrecision)) {
-    result.others = {bits_of(truncated(rounded_down(real_of(operand), format_of(16)))),
-                     bits_of(truncated(rounded_up(real_of(operand), format_of(16))))};
     result.open = absolute(value) > 16384;
+    if (!result.open)
+      result.others = {bits_of(truncated(rounded_down(real_of(operand), format_of(16)))),
+                       bits_of(truncated(rounded_up(real_of(operand), format_of(16))))};
     result.reason = "relaxed precision is 16 bits";
   }
   return result;
@@ -48,6 +49,7 @@ Permitted between_floats(const Call& call, const Scalar& like, const Scalar& ope
   Rules rules = rules_of(call.module, call.instruction, like.width);
   if (call.instruction.op == spv::OpQuantizeToF16) {
     rules.format = format_of(16);
+    rules.quantized = true;
     return computed(rules, like.width, {&operand, 1},
                     [](const Rules& r, std::span<const Range> x) { return quantized(r, x[0]); });
   }

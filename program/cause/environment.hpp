@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "program/cause/range.hpp"
+#include "program/cause/number/range.hpp"
 #include "program/record/module.hpp"
 
 /// What a module says about the floats of an instruction: decorations, and execution modes of the entry point.

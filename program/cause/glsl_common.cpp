@@ -158,6 +158,18 @@ const char* why_undefined(std::uint32_t op, std::span<const Scalar> x) {
   return nullptr;
 }
 
+/// NMin, NMax and NClamp take the other operand's value in place of NaN. Whether there was one.
+bool replace_nan(std::uint32_t op, Scalars& x) {
+  if (op != GLSLstd450NMin && op != GLSLstd450NMax && op != GLSLstd450NClamp) return false;
+  bool found = false;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (is_nan(real_of(x[i]))) {
+      x[i] = x[1 - i];
+      found = true;
+    }
+  return found;
+}
+
 /// x * 2^exponent: "correctly rounded", and open where the exponent is large (GLSL.std.450, Ldexp).
 Permitted ldexp(const Rules& rules, const Scalar& like, const Scalar& x, const Scalar& exponent) {
   if (x.undefined || exponent.undefined) return undefined(like, undefined_operand);
@@ -231,9 +243,13 @@ std::optional<Permissions> permitted_glsl_common(const Call& call) {
       permissions.push_back(undefined(like, why));
       continue;
     }
+    const bool ignores_nan = replace_nan(call.glsl, operands);
     permissions.push_back(computed(rules, like.width, operands, [&](const Rules& r, std::span<const Range> x) {
       return *evaluate(call.glsl, r, x);
     }));
+    if (!ignores_nan || permissions.back().undefined) continue;
+    permissions.back().open = true;
+    permissions.back().reason = "NaN need not be respected";
   }
   return permissions;
 }

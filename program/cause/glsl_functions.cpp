@@ -2,8 +2,8 @@
 
 #include <spirv_cross/GLSL.std.450.h>
 
-#include "program/cause/elementary.hpp"
 #include "program/cause/environment.hpp"
+#include "program/cause/number/elementary.hpp"
 #include "program/cause/permitted.hpp"
 
 /// GLSL.std.450 from Sin to InverseSqrt, by the table "Precision of GLSL.std.450 Instructions".

@@ -6,7 +6,7 @@
 #include "program/cause/permitted.hpp"
 
 /// Determinant and MatrixInverse. Vulkan gives them no precision ("undefined precision" of what its tables do not
-/// name); they are held against the formula of cofactors, which every known implementation uses.
+/// name); they are held against the formula of cofactors, so that an inverse with exchanged elements is found.
 namespace tandem::program {
 namespace {
 
@@ -39,7 +39,9 @@ Range inverse(const Rules& rules, Ranges matrix, std::size_t size, std::size_t c
   const Range minor = determinant(rules, minor_of(matrix, size, row, column), size - 1);
   const Range cofactor = (row + column) % 2 == 0 ? minor : negate(minor);
   const Range quotient = divide(rules, cofactor, whole);
-  return inherited(either(quotient, multiply(rules, cofactor, divide(rules, exactly(1), whole))));
+  Range result = either(quotient, multiply(rules, cofactor, divide(rules, exactly(1), whole)));
+  if (result.exact == 0) result.exact = 0;  // not -0, which is only the sign of the cofactor
+  return inherited(result);
 }
 
 bool may_be_singular(const Rules& rules, const Scalars& matrix, std::size_t size) {

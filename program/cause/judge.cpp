@@ -49,6 +49,7 @@ Call call_of(const Module& module, const Instruction& instruction,
       call.operands.push_back(undefined_scalars(module, module.instructions[defined->second].type));
     else
       call.operands.push_back(operands[i] ? std::optional(scalars_of(*operands[i])) : std::nullopt);
+    if (call.operands.back() && call.operands.back()->empty()) call.operands.back().reset();
   }
   return call;
 }
@@ -57,21 +58,21 @@ Call call_of(const Module& module, const Instruction& instruction,
 Judgement judge_phi(const Call& call, const Scalars& a, const Scalars& b) {
   bool a_found = false, b_found = false, all_known = true;
   const auto is_result = [](const Scalars& value, const Scalars& result) {
-    return std::equal(value.begin(), value.end(), result.begin(), result.end(), are_same);
+    return std::equal(value.begin(), value.end(), result.begin(), result.end(), are_alike);
   };
   for (std::size_t i = 0; i < call.operands.size(); i += 2) {  // each is followed by its label
     const std::optional<Scalars>& value = call.operands[i];
     if (value && !value->empty() && value->front().undefined)
       return {.cause = Cause::undefined, .wrong = WrongDevice::none, .reason = undefined_operand};
     all_known = all_known && value;
+    if (value && is_result(*value, a) && is_result(*value, b))
+      return {.cause = Cause::within_precision,
+              .wrong = WrongDevice::none,
+              .reason = "the sign of zero and the bits of a NaN are open"};
     a_found = a_found || (value && is_result(*value, a));
     b_found = b_found || (value && is_result(*value, b));
   }
-  if (a_found && b_found) {
-    if (std::equal(a.begin(), a.end(), b.begin(), are_same))
-      return {.cause = Cause::within_precision, .wrong = WrongDevice::none, .reason = "the bits of a NaN are open"};
-    return unknown("the devices took the values of different predecessors");
-  }
+  if (a_found && b_found) return unknown("the devices took the values of different predecessors");
   if (!all_known) return unknown("a predecessor's value is not recorded");
   Judgement judgement = unknown("the result is no predecessor's value");
   judgement.wrong = a_found ? WrongDevice::b : b_found ? WrongDevice::a : WrongDevice::both;

@@ -31,6 +31,7 @@ Permitted moved_float(const Rules& rules, const Scalar& value) {
   if (value.undefined) return undefined(value, undefined_operand);
   const Real real = real_of(value);
   Permitted result{.expected = value, .ranges = {operand(rules, real)}, .rules = rules};
+  if (rules.may_flush && is_denormal(value)) result.ranges[0].may_be_zero = true;
   result.open = is_beyond_relaxed(rules, real) || (!is_finite(real) && !rules.keeps_specials);
   if (result.open) result.reason = is_finite(real) ? "relaxed precision ends at 2^14" : specials;
   return result;
@@ -50,13 +51,18 @@ Permitted computed(const Rules& rules, std::uint32_t width, std::span<const Scal
   const Format format = format_of(width);
   const Real rounded = rules.rounding == Rounding::to_zero ? rounded_to_zero(first.exact, format, first.tail)
                                                            : rounded_to_nearest(first.exact, format, first.tail);
-  result.expected = float_scalar(rounded, width);
+  const bool flushes = rules.must_flush && program::is_denormal(rounded, format);
+  result.expected = float_scalar(flushes ? Real{0} : rounded, width);
   result.ranges = {first};
   if (rules.may_flush && std::any_of(operands.begin(), operands.end(), [](const Scalar& s) { return is_denormal(s); }))
     result.ranges.push_back(evaluate(true));
   const bool finite =
       std::all_of(operands.begin(), operands.end(), [](const Scalar& each) { return is_finite(real_of(each)); });
   if (is_nan(rounded) && finite) return undefined(like, "the result is not a number");
+  if (is_nan(rounded) && rules.keeps_specials) {
+    result.ranges = {exactly(rounded)};
+    return result;
+  }
   if (!rules.keeps_specials && (!finite || !is_finite(rounded))) {
     result.open = true;
     result.reason = specials;

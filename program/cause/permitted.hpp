@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "program/cause/judge.hpp"
-#include "program/cause/range.hpp"
-#include "program/cause/scalar.hpp"
+#include "program/cause/number/range.hpp"
+#include "program/cause/number/scalar.hpp"
 
 /// What the specifications permit an instruction's result to be, scalar by scalar.
 namespace tandem::program {

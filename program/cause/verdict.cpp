@@ -195,9 +195,10 @@ std::string operation_name(const Instruction& instruction, std::uint32_t glsl) {
   }
 }
 
-bool are_same(const Scalar& a, const Scalar& b) {
+bool are_alike(const Scalar& a, const Scalar& b) {
   if (a.bits == b.bits) return true;
-  return a.kind == ComponentKind::floating && is_nan(real_of(a)) && is_nan(real_of(b));
+  if (a.kind != ComponentKind::floating) return false;
+  return real_of(a) == real_of(b) || (is_nan(real_of(a)) && is_nan(real_of(b)));
 }
 
 Verdict verdict_of(const Permitted& permitted, const std::string& operation, const Scalar& a, const Scalar& b) {
@@ -210,7 +211,7 @@ Verdict verdict_of(const Permitted& permitted, const std::string& operation, con
     verdict.reason = permitted.reason;
     return verdict;
   }
-  if (are_same(a, b)) {
+  if (a.kind == ComponentKind::floating && is_nan(real_of(a)) && is_nan(real_of(b))) {
     verdict.reason = "the bits of a NaN are open";
     return verdict;
   }

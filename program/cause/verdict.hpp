@@ -19,8 +19,8 @@ struct Verdict {
 /// @param operation a noun for the reason: "sqrt", "a division"
 Verdict verdict_of(const Permitted& permitted, const std::string& operation, const Scalar& a, const Scalar& b);
 
-/// Whether both have the same value: NaNs have.
-bool are_same(const Scalar& a, const Scalar& b);
+/// Whether they differ by no more than the sign of zero or the bits of a NaN.
+bool are_alike(const Scalar& a, const Scalar& b);
 
 /// "sqrt", "a division"; "the result" of what has no shorter name.
 std::string operation_name(const Instruction& instruction, std::uint32_t glsl);

@@ -137,7 +137,7 @@ std::vector<OutputState> compare_outputs(const Snapshot& inputs, const Snapshot&
 std::size_t most_interesting(const Explanation& explanation) {
   if (!explanation.lockstep.sites.empty()) return explanation.lockstep.sites.front().example.slot;
   const auto first =
-      std::ranges::find_if(explanation.first, [](const FirstDifference& each) { return each.value.has_value(); });
+      std::ranges::find_if(explanation.first, [](const FirstDivergence& each) { return each.value.has_value(); });
   return first == explanation.first.end() ? 0 : static_cast<std::size_t>(first - explanation.first.begin());
 }
 
@@ -196,7 +196,7 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
   }
   for (std::size_t slot = 0; slot < selection.invocations.size(); ++slot)
-    result.first.push_back(first_difference(*result.launch, result.a, result.free, slot, circumstances));
+    result.first.push_back(first_divergence(*result.launch, result.a, result.free, slot, circumstances));
 
   Job single = job;
   single.commands = {command};
@@ -219,7 +219,7 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
 
 bool differs(const Explanation& explanation) {
   return !explanation.lockstep.sites.empty() || explanation.lockstep.parted != 0 ||
-         std::ranges::any_of(explanation.first, [](const FirstDifference& each) { return each.value.has_value(); }) ||
+         std::ranges::any_of(explanation.first, [](const FirstDivergence& each) { return each.value.has_value(); }) ||
          std::ranges::any_of(explanation.outputs, [](const OutputState& each) { return !each.plain_equal; });
 }
 

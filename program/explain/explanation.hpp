@@ -46,7 +46,7 @@ struct Explanation {
   std::unique_ptr<RecordedLaunch> launch;   ///< null: no command runs shaders
   Recording a, forced, free;                ///< a's recording; b forced along it, and b on its own
   LockstepComparison lockstep;              ///< a against `forced`
-  std::vector<FirstDifference> first;       ///< by slot, a against `free`
+  std::vector<FirstDivergence> first;       ///< by slot, a against `free`
   std::vector<OutputState> outputs;         ///< those that the command can write
   std::optional<std::size_t> slot;          ///< that is worth to be shown: the gravest, or the chosen one
 };

@@ -11,7 +11,7 @@ namespace {
 bool only_moves(spv::Op op) { return op == spv::OpLoad || op == spv::OpCompositeExtract || op == spv::OpCopyObject; }
 
 /// Goes to where the difference is: all before it has passed.
-bool go_to(Walk& walk, const Difference& difference) {
+bool go_to(Walk& walk, const Divergence& difference) {
   while (walk.next())
     for (std::size_t i = walk.segment().first_instruction; i < walk.segment().end_instruction; ++i) {
       const bool is_in_segment =
@@ -24,7 +24,7 @@ bool go_to(Walk& walk, const Difference& difference) {
 
 }  // namespace
 
-std::vector<SliceEntry> slice_of(const RecordedLaunch& launch, const Recording& recording, const Difference& difference,
+std::vector<SliceEntry> slice_of(const RecordedLaunch& launch, const Recording& recording, const Divergence& difference,
                                  std::size_t most) {
   const SlotView slot = slot_of(recording.request, recording.buffer, difference.slot);
   Walk walk(launch, slot);

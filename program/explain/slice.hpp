@@ -18,7 +18,7 @@ struct SliceEntry {
 /// on, through variables too, nearest first. Those that only move values (loads, extracts) are left out where what they
 /// move is there.
 /// @param most entries
-std::vector<SliceEntry> slice_of(const RecordedLaunch& launch, const Recording& recording, const Difference& difference,
+std::vector<SliceEntry> slice_of(const RecordedLaunch& launch, const Recording& recording, const Divergence& difference,
                                  std::size_t most);
 
 }  // namespace tandem::program

@@ -78,14 +78,12 @@ std::string name_of(const Module& module, std::uint32_t id) {
     if (definition.op == spv::OpAccessChain || definition.op == spv::OpInBoundsAccessChain) {
       std::string text = name_of(module, definition.words[3]);
       if (text.starts_with('%')) text = "";  // a block without a name
-      for (std::size_t i = 4; i < definition.words.size(); ++i) {
-        const std::string index = name_of(module, definition.words[i]);
-        text += "[" + index + "]";
-      }
+      for (std::size_t i = 4; i < definition.words.size(); ++i)
+        text += fmt::format("[{}]", name_of(module, definition.words[i]));
       return text;
     }
   }
-  return std::string("%").append(std::to_string(id));
+  return fmt::format("%{}", id);
 }
 
 std::string describe_instruction(const Module& module, std::size_t instruction) {

@@ -51,7 +51,7 @@ std::string value_line(const std::string& name, const RecordedWords& value, std:
   return line + "\n";
 }
 
-std::string difference_text(const Difference& difference, const ExplanationNames& names) {
+std::string difference_text(const Divergence& difference, const ExplanationNames& names) {
   const RecordedShader& shader = *difference.shader;
   const SourcePlace place = source_of(shader.module, difference.instruction);
   const Instruction& instruction = shader.module.instructions[difference.instruction];
@@ -75,7 +75,7 @@ std::string difference_text(const Difference& difference, const ExplanationNames
   return text;
 }
 
-std::string slice_text(const Explanation& explanation, const Difference& difference) {
+std::string slice_text(const Explanation& explanation, const Divergence& difference) {
   std::string text;
   const Module& module = difference.shader->module;
   for (const SliceEntry& entry : slice_of(*explanation.launch, explanation.a, difference, most_slice)) {
@@ -141,7 +141,7 @@ std::string explanation_text(const Explanation& explanation, const Job& job, con
   const std::size_t slot = *explanation.slot;
   text +=
       fmt::format("\nInvocation {}\n", id_text(id_of(explanation.a.request, explanation.a.request.invocations[slot])));
-  const FirstDifference& first = explanation.first[slot];
+  const FirstDivergence& first = explanation.first[slot];
   if (first.value) {
     text += fmt::format("First other bits, behind {} equal values:\n", first.value->order);
     text += difference_text(*first.value, names);
@@ -155,7 +155,7 @@ std::string explanation_text(const Explanation& explanation, const Job& job, con
     text += slice_text(explanation, *first.decision);
   }
   if (!lockstep.sites.empty()) {
-    const Difference& gravest = lockstep.sites.front().example;
+    const Divergence& gravest = lockstep.sites.front().example;
     const bool shown = first.value && first.value->instruction == gravest.instruction && gravest.slot == slot;
     if (!shown) {
       text += "Gravest difference with equal operands:\n" + difference_text(gravest, names);

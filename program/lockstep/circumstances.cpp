@@ -46,7 +46,7 @@ bool is_filtered(spv::Op op) {
 }
 
 /// The result against what it should be.
-Judgement against(const RecordedWords& expected, const Difference& difference, std::string reason) {
+Judgement against(const RecordedWords& expected, const Divergence& difference, std::string reason) {
   Judgement result = judgement(Cause::mismatch, std::move(reason));
   const bool a = difference.a.words == expected.words, b = difference.b.words == expected.words;
   result.wrong = a ? WrongDevice::b : b ? WrongDevice::a : WrongDevice::both;
@@ -54,7 +54,7 @@ Judgement against(const RecordedWords& expected, const Difference& difference, s
   return result;
 }
 
-Judgement judge_load(const Walk& walk, const Difference& difference) {
+Judgement judge_load(const Walk& walk, const Divergence& difference) {
   const Module& module = walk.shader().module;
   const Instruction& load = module.instructions[difference.instruction];
   const std::uint32_t pointer = load.words[3], variable = walk.variable_of(pointer);
@@ -80,7 +80,7 @@ Judgement judge_load(const Walk& walk, const Difference& difference) {
 
 /// Filters may weigh texels with as few as 4 bits of the coordinates' fractions (VkPhysicalDeviceLimits::
 /// subTexelPrecisionBits), and 8 on every device that we know of; a sum of weighted texels errs by as much.
-bool is_near(const Difference& difference) {
+bool is_near(const Divergence& difference) {
   constexpr float bound = 0x1p-6f;
   for (std::size_t i = 0; i < difference.a.words.size(); ++i) {
     if (difference.a.components[i].kind != ComponentKind::floating) return false;
@@ -92,7 +92,7 @@ bool is_near(const Difference& difference) {
 
 }  // namespace
 
-Judgement judge_by_circumstances(const Walk& walk, const Difference& difference, const Circumstances& circumstances) {
+Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference, const Circumstances& circumstances) {
   const Judgement& own = difference.judgement;
   const Module& module = walk.shader().module;
   const spv::Op op = module.instructions[difference.instruction].op;

@@ -9,7 +9,7 @@
 
 namespace tandem::program {
 
-struct Difference;
+struct Divergence;
 class RayArbiter;
 
 /// An instruction: its shader, and its position in the module.
@@ -25,6 +25,6 @@ struct Circumstances {
 /// The judgement about a difference of an instruction whose operands do not determine its result: a load, an atomic, an
 /// image, a ray, a subgroup operation. Any other difference keeps its judgement.
 /// @param walk stands in front of the instruction
-Judgement judge_by_circumstances(const Walk& walk, const Difference& difference, const Circumstances& circumstances);
+Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference, const Circumstances& circumstances);
 
 }  // namespace tandem::program

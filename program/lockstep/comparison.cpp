@@ -37,15 +37,15 @@ struct Comparing {
   std::size_t slot;
   const Circumstances& circumstances;
 
-  Difference difference(const RecordedValue& value, std::size_t order, RecordedWords a, RecordedWords b) const {
+  Divergence difference(const RecordedValue& value, std::size_t order, RecordedWords a, RecordedWords b) const {
     return difference_of(value.instruction, walk.position() + value.offset, value.is_address, order, std::move(a),
                          std::move(b));
   }
 
-  Difference difference_of(std::size_t i, std::size_t position, bool is_address, std::size_t order, RecordedWords a,
+  Divergence difference_of(std::size_t i, std::size_t position, bool is_address, std::size_t order, RecordedWords a,
                            RecordedWords b) const {
     const Module& module = walk.shader().module;
-    Difference difference{.shader = &walk.shader(),
+    Divergence difference{.shader = &walk.shader(),
                           .instruction = i,
                           .slot = slot,
                           .position = position,
@@ -93,7 +93,7 @@ int gravity(Cause cause) {
 namespace {
 
 /// Adds a difference to its site.
-void add(std::map<SiteKey, Site>& sites, Difference difference) {
+void add(std::map<SiteKey, Site>& sites, Divergence difference) {
   const Cause cause = difference.judgement.cause;
   auto [entry, is_new] = sites.try_emplace(
       {difference.shader, difference.instruction},
@@ -105,7 +105,7 @@ void add(std::map<SiteKey, Site>& sites, Difference difference) {
 }
 
 /// A decision that b had of a, and did not follow.
-Difference ignored_decision(const Walk& walk, std::size_t instruction, std::size_t slot, std::size_t order) {
+Divergence ignored_decision(const Walk& walk, std::size_t instruction, std::size_t slot, std::size_t order) {
   return {.shader = &walk.shader(),
           .instruction = instruction,
           .slot = slot,
@@ -182,12 +182,12 @@ std::set<SiteKey> differing_sites(const RecordedLaunch& launch, const Recording&
   return sites;
 }
 
-FirstDifference first_difference(const RecordedLaunch& launch, const Recording& a, const Recording& b, std::size_t slot,
+FirstDivergence first_divergence(const RecordedLaunch& launch, const Recording& a, const Recording& b, std::size_t slot,
                                  const Circumstances& circumstances) {
   const SlotView slot_a = slot_of(a.request, a.buffer, slot), slot_b = slot_of(b.request, b.buffer, slot);
   Walk walk(launch, slot_a), other(launch, slot_b);
   const Comparing comparing{walk, slot, circumstances};
-  FirstDifference first;
+  FirstDivergence first;
   std::size_t order = 0;
   while (!first.decision && walk.next() && other.next()) {
     if (walk.number() != other.number()) break;  // another shader: its call has differed

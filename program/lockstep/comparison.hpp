@@ -16,7 +16,7 @@
 namespace tandem::program {
 
 /// A value that differs, with what the instruction had.
-struct Difference {
+struct Divergence {
   const RecordedShader* shader = nullptr;
   std::size_t instruction = 0;  ///< position in its module's instructions
   std::size_t slot = 0;
@@ -35,7 +35,7 @@ struct Site {
   std::uint64_t executions = 0;
   std::uint64_t differences = 0;
   std::array<std::uint64_t, cause_count> causes = {};  ///< of the differences, by Cause
-  Difference example;                                  ///< the gravest; of equal ones the first
+  Divergence example;                                  ///< the gravest; of equal ones the first
 };
 
 struct LockstepComparison {
@@ -59,11 +59,11 @@ LockstepComparison compare_lockstep(const RecordedLaunch& launch, const Recordin
 std::set<SiteKey> differing_sites(const RecordedLaunch& launch, const Recording& a, const Recording& b);
 
 /// Where two executions of an invocation, neither of which is forced, have other bits for the first time.
-struct FirstDifference {
-  std::optional<Difference> value;     ///< the first value
-  std::optional<Difference> decision;  ///< the first one that decides where the shader goes: a branch or a switch
+struct FirstDivergence {
+  std::optional<Divergence> value;     ///< the first value
+  std::optional<Divergence> decision;  ///< the first one that decides where the shader goes: a branch or a switch
 };
-FirstDifference first_difference(const RecordedLaunch& launch, const Recording& a, const Recording& b, std::size_t slot,
+FirstDivergence first_divergence(const RecordedLaunch& launch, const Recording& a, const Recording& b, std::size_t slot,
                                  const Circumstances& circumstances);
 
 }  // namespace tandem::program

@@ -245,7 +245,7 @@ std::vector<RayArbiter::Answer> RayArbiter::answers(const Ray& ray) const {
   return answers;
 }
 
-std::optional<Judgement> RayArbiter::judge(const Walk& walk, const Difference& difference) const {
+std::optional<Judgement> RayArbiter::judge(const Walk& walk, const Divergence& difference) const {
   const Module& module = walk.shader().module;
   const Instruction& instruction = module.instructions[difference.instruction];
   std::optional<Question> question = question_of(instruction.op);

@@ -13,7 +13,7 @@
 
 namespace tandem::program {
 
-struct Difference;
+struct Divergence;
 
 /// Decides between two answers to a ray: it is traced once more on a device that does not round, and so are its
 /// neighbours, which differ from it by a few units in the last place. What one of them meets, a device may answer.
@@ -26,7 +26,7 @@ class RayArbiter {
 
   /// About what a ray query or a hit shader's built-in says of a committed hit: a tie, within precision or a mismatch.
   /// Nothing for any other instruction, and where the ray is not known.
-  std::optional<Judgement> judge(const Walk& walk, const Difference& difference) const;
+  std::optional<Judgement> judge(const Walk& walk, const Divergence& difference) const;
 
  private:
   struct Ray;

@@ -90,6 +90,7 @@ void add_explain_command(CLI::App& app, Action& action) {
       "Also trace the rays of the path under masks, culling, transformed instances, ... [if the paths are equal]");
   command->add_option("--json", options->json, "Write all events and classes as JSON")->type_name("FILE");
   command->footer(
+      "A shader of your own or an Amber script in the place of SCENE: 'tandem explain x.comp --help'.\n"
       "Exit code: 0 nothing but rounding and ties, 1 a mismatch: one of the devices is wrong, 2 error.\n"
       "Examples:\n"
       "  tandem explain scenes/cornell_box.obj --pixel 248,109 --a cpu --b vulkan\n"

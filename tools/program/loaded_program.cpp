@@ -47,9 +47,11 @@ class Loader {
     for (const std::filesystem::path& file : files) {
       if (positions_.contains({file, launch.entry_point})) continue;
       positions_[{file, launch.entry_point}] = result_.shaders.size();
-      result_.shaders.push_back(
-          program::load_shader(file, {.defines = options_.defines, .include_directories = options_.include_directories},
-                               launch.entry_point));
+      result_.shaders.push_back(program::load_shader(file,
+                                                     {.defines = options_.defines,
+                                                      .include_directories = options_.include_directories,
+                                                      .debug_info = options_.debug_info},
+                                                     launch.entry_point));
       result_.interfaces.push_back(program::interface_of(result_.shaders.back()));
     }
   }

@@ -43,6 +43,7 @@ struct RunOptions {
   std::vector<glsl::Define> defines;
   std::vector<std::filesystem::path> include_directories;
   std::vector<Setting> saves;  ///< a resource, and the file
+  bool debug_info = false;     ///< GLSL is compiled with names and line numbers
 
   std::vector<std::string> devices = {"cpu"};
   bool compare = false;

@@ -1,4 +1,4 @@
-#include "program/cause/real.hpp"
+#include "program/cause/number/real.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "program/cause/range.hpp"
+#include "program/cause/number/range.hpp"
 
 #include <algorithm>
 #include <array>
@@ -248,6 +248,7 @@ bool permits(const Rules& rules, const Range& range, Real value) {
   if (is_infinite(value)) return value > 0 ? range.high > largest : range.low < -largest;
   if (value == 0 && range.may_be_zero) return true;
   if (rules.must_flush && is_denormal(value, rules.format)) return false;
+  if (rules.quantized && rounded_down(value, rules.format) != value) return false;
   // Beyond the largest number, an infinity or that number is returned.
   const Real low = std::min(range.low, largest), high = std::max(range.high, -largest);
   return value >= low && value <= high;

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "program/cause/real.hpp"
+#include "program/cause/number/real.hpp"
 
 /// What the Vulkan specification permits a float to be, and how arithmetic carries it on: appendix "Vulkan Environment
 /// for SPIR-V", "Precision and Operation of SPIR-V Instructions".
@@ -18,6 +18,7 @@ struct Rules {
   bool must_flush = false;                    ///< denormal results
   bool keeps_specials = false;                ///< the sign of zero, NaN and infinity count
   bool relaxed = false;                       ///< RelaxedPrecision
+  bool quantized = false;                     ///< results of a wider format have the digits of this one
 };
 
 /// A value that is not known exactly: every step of a formula may err.

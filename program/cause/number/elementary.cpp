@@ -1,4 +1,4 @@
-#include "program/cause/elementary.hpp"
+#include "program/cause/number/elementary.hpp"
 
 #include <algorithm>
 #include <array>

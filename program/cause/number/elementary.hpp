@@ -1,6 +1,6 @@
 #pragma once
 
-#include "program/cause/range.hpp"
+#include "program/cause/number/range.hpp"
 #include "rhi/precision.hpp"
 
 /// The functions of GLSL.std.450 that have a bound of their own in Vulkan's tables, and those that inherit theirs.

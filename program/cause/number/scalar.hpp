@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "program/cause/real.hpp"
+#include "program/cause/number/real.hpp"
 #include "program/record/components.hpp"
 
 /// The scalars of recorded values, with as many bits as their types have.

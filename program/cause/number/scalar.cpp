@@ -1,4 +1,4 @@
-#include "program/cause/scalar.hpp"
+#include "program/cause/number/scalar.hpp"
 
 #include "program/cause/judge.hpp"
 

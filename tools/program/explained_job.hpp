@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "program/job/job.hpp"
+#include "rhi/device.hpp"
+#include "tools/program/run_arguments.hpp"
+
+namespace tandem::tools::program_run {
+
+/// What two devices are compared on: an Amber script, or shaders with the options of `tandem run`.
+struct ExplainedJob {
+  std::string name;  ///< of the script, or the first shader
+  program::Job job;  ///< its shaders have names and line numbers where they are GLSL
+};
+
+/// Whether a file name is that of something that `tandem run` or `tandem amber` takes.
+bool is_program_file(std::string_view file);
+
+/// @param device whose limits a script may depend on
+/// Throws Error and rhi::Error, with the file or option at fault.
+ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo& device);
+
+/// "5", "5,2" or "5,2,0". Throws CLI::ValidationError, naming the option.
+std::array<std::uint32_t, 3> invocation_of(const char* option, const std::string& text);
+
+}  // namespace tandem::tools::program_run
