@@ -6,6 +6,7 @@
 
 #include "program/execute/execution.hpp"
 #include "program/explain/output_sites.hpp"
+#include "program/lockstep/atomics.hpp"
 #include "program/lockstep/ray_arbiter.hpp"
 #include "rhi/error.hpp"
 
@@ -192,6 +193,8 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     RecordedExecution& mirror = on_a.of(RecordForm::lockstep, true);
     const Recording mirrored = mirror.replay(result.a, true);
     circumstances.order_dependent = differing_sites(*result.launch, result.a, mirrored);
+    if (selection.invocations.size() == selection.launched)
+      circumstances.wrong_atomics = wrong_atomics(*result.launch, result.a, result.forced);
     mirrored_a = mirror.outputs();
     result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
   }
@@ -211,8 +214,14 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
   std::vector<char> ignored(inputs.buffers.size(), 0);
   for (const OutputState& output : result.outputs)
     if (!output.is_image && output.order_changed) ignored[output.index] = 1;
-  for (Site& site : output_sites(*result.launch, result.a, recorded_a, forced_b, ignored))
-    result.lockstep.sites.insert(result.lockstep.sites.begin(), std::move(site));
+  for (Site& site : output_sites(*result.launch, result.a, recorded_a, forced_b, ignored)) {
+    std::vector<Site>& sites = result.lockstep.sites;
+    const bool is_known = std::ranges::any_of(sites, [&](const Site& known) {
+      return known.shader == site.shader && known.instruction == site.instruction &&
+             known.example.judgement.cause == Cause::mismatch;
+    });
+    if (!is_known) sites.insert(sites.begin(), std::move(site));
+  }
   result.slot = most_interesting(result);
   return result;
 }

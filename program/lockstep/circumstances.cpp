@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "program/lockstep/atomics.hpp"
 #include "program/lockstep/comparison.hpp"
 #include "program/lockstep/ray_arbiter.hpp"
 
@@ -99,6 +100,16 @@ Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference,
   if (difference.is_address) return judgement(Cause::device_defined, "an address");
   if (op == spv::OpReadClockKHR) return judgement(Cause::device_defined, "a clock");
   if (own.cause != Cause::mismatch || own.wrong != WrongDevice::unknown) return own;
+  if (const auto wrong = circumstances.wrong_atomics.find({difference.shader, difference.instruction});
+      wrong != circumstances.wrong_atomics.end()) {
+    Judgement result = judgement(Cause::mismatch, "in no order of the invocations do the old values follow each other");
+    result.wrong = wrong->second;
+    return result;
+  }
+  if (op == spv::OpLoad && !circumstances.wrong_atomics.empty() &&
+      variables_of(circumstances.wrong_atomics)
+          .contains({difference.shader, walk.variable_of(module.instructions[difference.instruction].words[3])}))
+    return judgement(Cause::order, "a wrong atomic wrote it");
   if (circumstances.order_dependent.contains({difference.shader, difference.instruction}))
     return judgement(Cause::order, "the result depends on the order of the invocations");
   if (is_subgroup_operation(op) && !circumstances.same_subgroups)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -17,9 +18,10 @@ using SiteKey = std::pair<const RecordedShader*, std::size_t>;
 
 /// What is known of a launch beside its instructions' operands.
 struct Circumstances {
-  std::set<SiteKey> order_dependent = {};  ///< give other results when the invocations run in another order
-  bool same_subgroups = true;              ///< both devices form subgroups of one size
-  const RayArbiter* rays = nullptr;        ///< decides about rays; null: nobody does
+  std::set<SiteKey> order_dependent = {};             ///< give other results when the invocations run in another order
+  std::map<SiteKey, WrongDevice> wrong_atomics = {};  ///< what wrong_atomics() found
+  bool same_subgroups = true;                         ///< both devices form subgroups of one size
+  const RayArbiter* rays = nullptr;                   ///< decides about rays; null: nobody does
 };
 
 /// The judgement about a difference of an instruction whose operands do not determine its result: a load, an atomic, an

@@ -135,8 +135,11 @@ LockstepComparison compare_lockstep(const RecordedLaunch& launch, const Recordin
     while (walk.next()) {
       const bool same = walk.position() + walk.segment().words <= slot_b.words.size() &&
                         slot_b.words[walk.position()] == walk.number();
-      if (!same && !parted && !walk.begins_shader() && walk.shader_depth() == 1 && last_instruction != 0)
+      if (!same && !walk.begins_shader() && walk.shader_depth() == 1) {
+        // Everything behind it is out of step.
         add(sites, ignored_decision(walk, last_instruction, slot, order));
+        break;
+      }
       parted = parted || !same;
       for_each_instruction(walk.segment(), [&](std::size_t i, const RecordedValue* value) {
         if (value != nullptr) {

@@ -121,6 +121,7 @@ RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm 
   Command own = command;
   if (auto* dispatch = std::get_if<Dispatch>(&own)) {
     dispatch->pipeline = 0;
+    launch.workgroup_size = fixed[0].reflection.workgroup_size;
     for (std::size_t i = 0; i < 3; ++i)
       launch.size[i] =
           (dispatch->base_workgroup[i] + dispatch->workgroup_count[i]) * fixed[0].reflection.workgroup_size[i];

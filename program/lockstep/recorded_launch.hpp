@@ -27,6 +27,7 @@ struct RecordedLaunch {
   std::size_t record_buffer = 0;           ///< position in job.buffers
   std::vector<RecordedShader> shaders;     ///< ascending by first_segment
   std::array<std::uint32_t, 3> size = {};  ///< invocations
+  std::array<std::uint32_t, 3> workgroup_size = {1, 1, 1};  ///< of a compute shader
   std::uint32_t largest_segment = 1;
 };
 

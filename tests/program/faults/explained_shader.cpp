@@ -47,7 +47,7 @@ layout(local_size_x = 16) in;
 layout(set = 0, binding = 0) readonly buffer In { float values[]; };
 layout(set = 0, binding = 1) buffer Out { uint result[]; };
 uint hash(uint x) {
-  x ^= x >> 15;
+  x ^= x >> 2;
   x *= 0x2c1b3c6du;
   x = x | (x << 3);
   return x;

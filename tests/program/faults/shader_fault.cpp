@@ -96,7 +96,7 @@ std::vector<ShaderFault> shader_faults() {
       {"equal is not equal", "floats", 21, spv::OpFOrdEqual, 0, with_opcode(spv::OpFOrdNotEqual)},
       {"a store is lost", "floats", 22, spv::OpStore, 0, left_out},
       {"mix takes 1 - a", "floats", 23, spv::OpExtInst, GLSLstd450FMix, swapped(2, 3)},
-      {"a shift is one too far", "integers", 6, spv::OpShiftRightLogical, 0, with_operand(3, 16, true)},
+      {"a shift is one too far", "integers", 6, spv::OpShiftRightLogical, 0, with_operand(3, 3, true)},
       {"a product has another lowest bit", "integers", 7, spv::OpIMul, 0, plus(1)},
       {"or is exclusive", "integers", 8, spv::OpBitwiseOr, 0, with_opcode(spv::OpBitwiseXor)},
       {"a conversion rounds up", "integers", 14, spv::OpConvertFToS, 0, plus(1)},
