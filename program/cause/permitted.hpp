@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "program/cause/judge.hpp"
+#include "program/cause/judgement.hpp"
 #include "program/cause/number/range.hpp"
 #include "program/cause/number/scalar.hpp"
 

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "program/cause/judge.hpp"
+#include "program/cause/judgement.hpp"
 
 namespace tandem::program {
 

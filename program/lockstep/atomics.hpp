@@ -1,8 +1,9 @@
 #pragma once
 
 #include <map>
+#include <set>
 
-#include "program/lockstep/circumstances.hpp"
+#include "program/lockstep/divergence.hpp"
 #include "program/lockstep/recorded_execution.hpp"
 
 namespace tandem::program {

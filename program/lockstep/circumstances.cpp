@@ -6,7 +6,7 @@
 #include <string>
 
 #include "program/lockstep/atomics.hpp"
-#include "program/lockstep/comparison.hpp"
+#include "program/lockstep/divergence.hpp"
 #include "program/lockstep/ray_arbiter.hpp"
 
 namespace tandem::program {

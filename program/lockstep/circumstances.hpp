@@ -5,16 +5,13 @@
 #include <set>
 #include <utility>
 
-#include "program/cause/judge.hpp"
+#include "program/cause/judgement.hpp"
+#include "program/lockstep/divergence.hpp"
 #include "program/lockstep/walk.hpp"
 
 namespace tandem::program {
 
-struct Divergence;
 class RayArbiter;
-
-/// An instruction: its shader, and its position in the module.
-using SiteKey = std::pair<const RecordedShader*, std::size_t>;
 
 /// What is known of a launch beside its instructions' operands.
 struct Circumstances {

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "program/cause/judge.hpp"
 #include "program/lockstep/walk.hpp"
 
 namespace tandem::program {

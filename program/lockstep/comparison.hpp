@@ -7,26 +7,14 @@
 #include <set>
 #include <vector>
 
-#include "program/cause/judge.hpp"
+#include "program/cause/judgement.hpp"
 #include "program/lockstep/circumstances.hpp"
+#include "program/lockstep/divergence.hpp"
 #include "program/lockstep/recorded_execution.hpp"
 #include "program/lockstep/recorded_launch.hpp"
 
 /// Two recordings of the same invocations, value by value.
 namespace tandem::program {
-
-/// A value that differs, with what the instruction had.
-struct Divergence {
-  const RecordedShader* shader = nullptr;
-  std::size_t instruction = 0;  ///< position in its module's instructions
-  std::size_t slot = 0;
-  std::size_t position = 0;  ///< of the value in the slot's words
-  std::size_t order = 0;     ///< how many values the invocation had recorded before
-  bool is_address = false;
-  std::vector<std::optional<RecordedWords>> operands;  ///< by Instruction::used_ids
-  RecordedWords a, b;
-  Judgement judgement;
-};
 
 /// What is known of one instruction, over all invocations.
 struct Site {

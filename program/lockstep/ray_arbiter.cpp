@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "program/lockstep/comparison.hpp"
+#include "program/lockstep/divergence.hpp"
 #include "rhi/glsl/compile.hpp"
 
 namespace tandem::program {

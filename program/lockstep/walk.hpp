@@ -7,7 +7,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "program/cause/judge.hpp"
+#include "program/cause/judgement.hpp"
 #include "program/lockstep/recorded_launch.hpp"
 #include "program/record/recording.hpp"
 

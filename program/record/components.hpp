@@ -21,6 +21,12 @@ struct Component {
   std::uint32_t word_count() const noexcept { return width == 64 ? 2 : 1; }
 };
 
+/// A value as it was recorded.
+struct RecordedWords {
+  std::vector<Component> components;
+  std::vector<std::uint32_t> words;
+};
+
 /// Values of more words are not recorded.
 inline constexpr std::uint32_t most_words = 64;
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "program/record/code.hpp"
-#include "program/record/instrument.hpp"
+#include "program/record/segment.hpp"
 
 namespace tandem::program {
 

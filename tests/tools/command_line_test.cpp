@@ -48,6 +48,7 @@ TEST_CASE("every command explains itself and all its options") {
        "SHADER --job -D -I --buffer --image --sampler --scene --non-opaque --spec --push --record --hit --entry "
        "--recursion --groups --size --device --compare --ulp --tolerance --save --print --lines --list --check --time "
        "--threads --validation Exit Examples"},
+      {"amber", "FILE --device --junit --time-limit --validation Exit Examples"},
       {"gallery", "LIST --out --device --only --size --spp --threads Exit Examples"},
       {"bench", "SCENE --kernels --device --repeat --json Exit Examples" + image},
       {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},
@@ -68,6 +69,14 @@ TEST_CASE("every command explains itself and all its options") {
       CAPTURE(word);
       CHECK(help.output.find(word) != std::string::npos);
     }
+  }
+  const Outcome of_shaders = run_tandem("explain x.comp --help");
+  CHECK(of_shaders.exit_code == 0);
+  for (const std::string& word :
+       words("SHADER --buffer --invocation --command --invocations --memory --no-order --a --b "
+             "--arbiter --threads --validation Exit Examples")) {
+    CAPTURE(word);
+    CHECK(of_shaders.output.find(word) != std::string::npos);
   }
   CHECK(run_tandem("--version").output == "tandem " TANDEM_VERSION "\n");
 }

@@ -1,6 +1,6 @@
 #include "program/cause/number/scalar.hpp"
 
-#include "program/cause/judge.hpp"
+#include "program/record/components.hpp"
 
 namespace tandem::program {
 
