@@ -157,6 +157,22 @@ bool is_open(const LockstepComparison& lockstep, const Snapshot& recorded_a, con
          });
 }
 
+/// Adds what is to blame for memory that differs although all values agree.
+void add_output_sites(Explanation& result, const Snapshot& recorded_a, const Snapshot& forced_b) {
+  // Where memory depends on the order of invocations, it says nothing.
+  std::vector<char> ignored(recorded_a.buffers.size(), 0);
+  for (const OutputState& output : result.outputs)
+    if (!output.is_image && output.order_changed) ignored[output.index] = 1;
+  for (Site& site : output_sites(*result.launch, result.a, recorded_a, forced_b, ignored)) {
+    std::vector<Site>& sites = result.lockstep.sites;
+    const bool is_known = std::ranges::any_of(sites, [&](const Site& known) {
+      return known.shader == site.shader && known.instruction == site.instruction &&
+             known.example.judgement.cause == Cause::mismatch;
+    });
+    if (!is_known) sites.insert(sites.begin(), std::move(site));
+  }
+}
+
 Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, const Command& command,
                             const Snapshot& inputs, const ExplainOptions& options) {
   Explanation result;
@@ -167,6 +183,7 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
   selection.select(on_a.of(RecordForm::record).launch().size);
   result.launched = selection.launched;
   result.other_bits = selection.other_bits;
+  result.all_recorded = selection.invocations.size() == selection.launched;
   if (selection.invocations.empty()) {
     result.launch = on_a.take_launch(RecordForm::record);
     return result;
@@ -193,8 +210,7 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     RecordedExecution& mirror = on_a.of(RecordForm::lockstep, true);
     const Recording mirrored = mirror.replay(result.a, true);
     circumstances.order_dependent = differing_sites(*result.launch, result.a, mirrored);
-    if (selection.invocations.size() == selection.launched)
-      circumstances.wrong_atomics = wrong_atomics(*result.launch, result.a, result.forced);
+    if (result.all_recorded) circumstances.wrong_atomics = wrong_atomics(*result.launch, result.a, result.forced);
     mirrored_a = mirror.outputs();
     result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
   }
@@ -210,17 +226,10 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     return snapshot_of(execution, single);
   };
   result.outputs = compare_outputs(inputs, plain(a), plain(b), recorded_a, free_b, forced_b, mirrored_a);
-  // Where memory depends on the order of invocations, it says nothing.
-  std::vector<char> ignored(inputs.buffers.size(), 0);
-  for (const OutputState& output : result.outputs)
-    if (!output.is_image && output.order_changed) ignored[output.index] = 1;
-  for (Site& site : output_sites(*result.launch, result.a, recorded_a, forced_b, ignored)) {
-    std::vector<Site>& sites = result.lockstep.sites;
-    const bool is_known = std::ranges::any_of(sites, [&](const Site& known) {
-      return known.shader == site.shader && known.instruction == site.instruction &&
-             known.example.judgement.cause == Cause::mismatch;
-    });
-    if (!is_known) sites.insert(sites.begin(), std::move(site));
+  if (result.all_recorded) {
+    add_output_sites(result, recorded_a, forced_b);
+  } else {
+    for (OutputState& output : result.outputs) output.forced_equal = true;
   }
   result.slot = most_interesting(result);
   return result;

@@ -32,9 +32,9 @@ struct ExplainOptions {
 /// Whether an output (a buffer or an image) holds the same bytes.
 struct OutputState {
   bool is_image = false;
-  std::size_t index = 0;                                    ///< position in Job::buffers or Job::images
-  bool plain_equal = true;                                  ///< a and b, as they run without recording
-  bool forced_equal = true;                                 ///< a, and b forced along it
+  std::size_t index = 0;     ///< position in Job::buffers or Job::images
+  bool plain_equal = true;   ///< a and b, as they run without recording
+  bool forced_equal = true;  ///< a, and b forced along it; true where not all invocations were recorded
   bool record_changed_a = false, record_changed_b = false;  ///< against the device's own run without recording
   bool order_changed = false;                               ///< of a, with the last invocation first
 };
@@ -43,6 +43,7 @@ struct Explanation {
   std::size_t command = 0;
   std::uint64_t launched = 0;               ///< invocations
   std::optional<std::uint64_t> other_bits;  ///< of them computed others; absent where all were recorded, or one
+  bool all_recorded = false;                ///< else the second device's memory is that of its own values, too
   std::unique_ptr<RecordedLaunch> launch;   ///< null: no command runs shaders
   Recording a, forced, free;                ///< a's recording; b forced along it, and b on its own
   LockstepComparison lockstep;              ///< a against `forced`

@@ -101,11 +101,11 @@ std::string sites_text(const Explanation& explanation, const ExplanationNames& n
   return text;
 }
 
-std::string output_text(const OutputState& output, const Job& job, const ExplanationNames& names) {
+std::string output_text(const OutputState& output, bool all_recorded, const Job& job, const ExplanationNames& names) {
   const std::string name = output.is_image ? job.images[output.index].desc.label : job.buffers[output.index].name;
   std::string text = fmt::format("  {} {}: {}", output.is_image ? "image" : "buffer", name,
                                  output.plain_equal ? "equal bits" : "other bits");
-  if (!output.plain_equal && output.forced_equal)
+  if (!output.plain_equal && output.forced_equal && all_recorded)
     text += fmt::format(", equal once {} goes on with the values of {}", names.b, names.a);
   if (!output.forced_equal)
     text += fmt::format(", and other bits even though {} goes on with the values of {}", names.b, names.a);
@@ -127,7 +127,8 @@ std::string explanation_text(const Explanation& explanation, const Job& job, con
   if (explanation.other_bits)
     text += fmt::format("{} of {} invocations compute other bits\n", *explanation.other_bits, explanation.launched);
   if (!explanation.slot) return text + "no invocation computes other bits\n";
-  for (const OutputState& output : explanation.outputs) text += output_text(output, job, names);
+  for (const OutputState& output : explanation.outputs)
+    text += output_text(output, explanation.all_recorded, job, names);
 
   const LockstepComparison& lockstep = explanation.lockstep;
   text +=
