@@ -35,8 +35,9 @@ void add_devices_command(CLI::App& app, Action& action);
 void add_render_command(CLI::App& app, Action& action);
 void add_diff_command(CLI::App& app, Action& action);
 void add_explain_command(CLI::App& app, Action& action);
-/// `explain` of shaders that are not the path tracer's, in the place of the command above.
+/// `explain` and `diff` of shaders that are not the path tracer's, in the place of the commands for scenes.
 void add_program_explain_command(CLI::App& app, Action& action);
+void add_program_diff_command(CLI::App& app, Action& action);
 void add_generate_command(CLI::App& app, Action& action);
 void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);

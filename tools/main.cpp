@@ -55,12 +55,14 @@ int run(int argc, char** argv) {
   add_devices_command(app, action);
   add_render_command(app, action);
   add_run_command(app, action);
-  add_diff_command(app, action);
-  // A scene and a shader have other options, and the same question.
-  if (names_program(std::span(argv, static_cast<std::size_t>(argc))))
+  // Scenes and shaders have other options, and the same questions.
+  if (names_program(std::span(argv, static_cast<std::size_t>(argc)))) {
+    add_program_diff_command(app, action);
     add_program_explain_command(app, action);
-  else
+  } else {
+    add_diff_command(app, action);
     add_explain_command(app, action);
+  }
   add_generate_command(app, action);
   add_gallery_command(app, action);
   add_bench_command(app, action);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tests/support/device_test.hpp"
@@ -87,6 +88,41 @@ TEST_CASE("what depends on the order of invocations is told from what is wrong")
     CHECK(outcome.exit_code == 0);
     CHECK_FALSE(contains(outcome.output, "mismatch"));
   }
+}
+
+TEST_CASE("two devices are compared with a verdict, as text, JSON and JUnit XML") {
+  for (const std::string& device : device_names()) {
+    const bool is_reference = device == "cpu";
+    ScratchFolder folder;
+    folder.write("waves.comp", waves);
+    const std::string b = is_reference ? "cpu-exact" : device;
+    const Outcome outcome = run_tandem("diff waves.comp" + bound + " --a cpu --b " + b + " --json d.json --junit d.xml",
+                                       {.folder = folder.path()});
+    CAPTURE(outcome.output);
+    CHECK(outcome.exit_code == (is_reference ? 0 : 3));
+    CHECK(contains(outcome.output, is_reference ? "verdict: equal bits" : "verdict: explained: within precision"));
+    const nlohmann::json json = nlohmann::json::parse(read_text(folder.path() / "d.json"));
+    CHECK(json["exit_code"] == outcome.exit_code);
+    CHECK(json["resources"][0]["name"] == "values");
+    CHECK(json["resources"][0]["values"] == 64);
+    CHECK(json.contains("explanation") != is_reference);
+    if (!is_reference) CHECK(json["explanation"]["instructions"][0]["line"] == 6);
+    CHECK(contains(read_text(folder.path() / "d.xml"), "<testcase classname=\"waves.comp\" name=\"values\""));
+    const Outcome within =
+        run_tandem("diff waves.comp" + bound + " --a cpu --tolerance 0.001 --b " + b, {.folder = folder.path()});
+    CHECK(within.exit_code == 0);
+  }
+}
+
+TEST_CASE("an explanation is written as JSON") {
+  ScratchFolder folder;
+  folder.write("tickets.amber", tickets);
+  const Outcome outcome =
+      run_tandem("explain tickets.amber --a cpu --b cpu-wide --json e.json", {.folder = folder.path()});
+  CHECK(outcome.exit_code == 0);
+  const nlohmann::json json = nlohmann::json::parse(read_text(folder.path() / "e.json"));
+  CHECK(json["recorded"] == 32);
+  CHECK(json["outputs"][0]["name"] == "tickets");
 }
 
 TEST_CASE("what cannot be explained is refused in one sentence") {

@@ -235,6 +235,7 @@ void add_diff_command(CLI::App& app, Action& action) {
   add_comparison_options(*command, options->comparison);
   add_tone_options(*command, options->tone);
   command->footer(
+      "A shader of your own or an Amber script in the place of SCENE: 'tandem diff x.comp --help'.\n"
       "Exit code: 0 the images agree, 1 they differ (from each other or from the baseline), 2 error, 3 they differ,\n"
       "but --classify explains it by the scene: no device is at fault.\n"
       "Examples:\n"

@@ -8,17 +8,19 @@
 
 #include "base/error.hpp"
 #include "devices/devices.hpp"
-#include "program/amber/script_run.hpp"
 #include "program/explain/explanation.hpp"
 #include "program/explain/text.hpp"
 #include "tools/command.hpp"
 #include "tools/options/device_options.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/messages.hpp"
+#include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/program/explained_job.hpp"
+#include "tools/program/explanation_json.hpp"
 #include "tools/program/run_arguments.hpp"
+#include "tools/report/device_json.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -33,6 +35,7 @@ struct Options {
   std::uint32_t most_invocations = 4096;
   std::uint32_t most_mebibytes = 256;
   bool skip_order = false;
+  std::filesystem::path json;  ///< empty: none
 };
 
 rhi::DeviceHandle open(const std::string& name, const Options& options) {
@@ -46,6 +49,7 @@ rhi::DeviceHandle open(const std::string& name, const Options& options) {
 }
 
 int explain_program(const Options& options) {
+  if (!options.json.empty()) check_output_path(options.json);
   const rhi::DeviceHandle a = open(options.a, options), b = open(options.b, options);
   const ExplainedJob explained = explained_job(options.run, a->info());
   program::ExplainOptions wanted{.invocation = options.invocation,
@@ -53,19 +57,26 @@ int explain_program(const Options& options) {
                                  .most_invocations = options.most_invocations,
                                  .check_order = !options.skip_order};
   if (options.command) {
-    if (*options.command == 0 || *options.command > explained.job.commands.size())
-      throw Error(
-          fmt::format("--command {}: there are commands 1 to {}", *options.command, explained.job.commands.size()));
+    if (*options.command == 0 || *options.command > explained.built.job.commands.size())
+      throw Error(fmt::format("--command {}: there are commands 1 to {}", *options.command,
+                              explained.built.job.commands.size()));
     wanted.command = *options.command - 1;
   }
   rhi::DeviceHandle exact;
-  if (!explained.job.top_levels.empty()) exact = open(options.arbiter, options);
+  if (!explained.built.job.top_levels.empty()) exact = open(options.arbiter, options);
   wanted.exact = exact.get();
   std::optional<ShownStage> stage("recording on both devices");
-  const program::Explanation explanation = program::explain(*a, *b, explained.job, wanted);
+  const program::Explanation explanation = program::explain(*a, *b, explained.built.job, wanted);
   stage.reset();
-  print("{}", program::explanation_text(explanation, explained.job,
-                                        {.a = a->info().name, .b = b->info().name, .input = explained.name}));
+  const program::ExplanationNames names{.a = a->info().name, .b = b->info().name, .input = explained.name};
+  print("{}", program::explanation_text(explanation, explained.built.job, names));
+  if (!options.json.empty()) {
+    const OutputFile file{options.json, [&](const std::filesystem::path& path) {
+                            write_text(path, json_text(to_json(explanation, explained.built.job, names)));
+                          }};
+    write_or_rescue({&file, 1});
+    print_written({&file, 1});
+  }
   return program::gravest(explanation) == program::Cause::mismatch ? exit_code::differ : exit_code::success;
 }
 
@@ -91,6 +102,7 @@ void add_program_explain_command(CLI::App& app, Action& action) {
   add_whole_number(*command, "--invocations", options->most_invocations, 1, 1u << 20,
                    "Invocations to record at most, of those that compute other bits");
   add_whole_number(*command, "--memory", options->most_mebibytes, 1, 4095, "Size of the recordings at most, in MiB");
+  command->add_option("--json", options->json, "Write what differs, with its classes, as JSON")->type_name("FILE");
   command->add_flag("--no-order", options->skip_order,
                     "Do not run the launch backwards to find what depends on the order of invocations");
   add_whole_number(*command, "--threads", options->run.run.threads, 0, 1024,

@@ -11,11 +11,25 @@
 #include "base/printable.hpp"
 #include "program/amber/script_run.hpp"
 #include "rhi/glsl/compile.hpp"
-#include "tools/program/job_builder.hpp"
 #include "tools/program/loaded_program.hpp"
 #include "tools/program/needs.hpp"
 
 namespace tandem::tools::program_run {
+namespace {
+
+/// Every buffer and image, as if shaders wrote them all.
+BuiltJob with_all_resources(program::Job job) {
+  BuiltJob built{.job = std::move(job), .resources = {}};
+  const auto add = [&](const std::string& name, bool is_image, std::size_t index) {
+    built.resources.push_back(
+        {.key = name, .is_image = is_image, .index = index, .is_written = true, .prefix = name, .names = {}});
+  };
+  for (std::size_t i = 0; i < built.job.buffers.size(); ++i) add(built.job.buffers[i].name, false, i);
+  for (std::size_t i = 0; i < built.job.images.size(); ++i) add(built.job.images[i].desc.label, true, i);
+  return built;
+}
+
+}  // namespace
 
 bool is_program_file(std::string_view file) {
   const std::filesystem::path path(file);
@@ -31,7 +45,7 @@ ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo&
     if (!script.unsupported.empty()) throw Error(fmt::format("{}: {}", files.front().string(), script.unsupported));
     program::amber::compile(script, true);
     program::amber::adapt(script, device);
-    return {files.front().string(), std::move(script.job)};
+    return {files.front().string(), with_all_resources(std::move(script.job))};
   }
   RunOptions options = complete(arguments);
   options.debug_info = true;
@@ -44,8 +58,7 @@ ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo&
                     "command",
                     names));
   }
-  BuiltJob built = build_job(program, options);
-  return {program.shaders.front().name, std::move(built.job)};
+  return {program.shaders.front().name, build_job(program, options)};
 }
 
 std::array<std::uint32_t, 3> invocation_of(const char* option, const std::string& text) {

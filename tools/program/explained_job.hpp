@@ -3,9 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
-#include "program/job/job.hpp"
 #include "rhi/device.hpp"
+#include "tools/program/job_builder.hpp"
 #include "tools/program/run_arguments.hpp"
 
 namespace tandem::tools::program_run {
@@ -13,7 +14,7 @@ namespace tandem::tools::program_run {
 /// What two devices are compared on: an Amber script, or shaders with the options of `tandem run`.
 struct ExplainedJob {
   std::string name;  ///< of the script, or the first shader
-  program::Job job;  ///< its shaders have names and line numbers where they are GLSL
+  BuiltJob built;    ///< its shaders have names and line numbers where they are GLSL
 };
 
 /// Whether a file name is that of something that `tandem run` or `tandem amber` takes.
