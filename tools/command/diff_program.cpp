@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "devices/devices.hpp"
 #include "program/execute/execution.hpp"
 #include "program/explain/explanation.hpp"
 #include "program/explain/source.hpp"
@@ -15,7 +14,6 @@
 #include "tools/options/device_options.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/output/junit.hpp"
-#include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
@@ -34,15 +32,6 @@ struct Options {
   std::string a = "cpu", b = "vulkan", arbiter = "cpu-exact";
   std::filesystem::path json, junit;  ///< empty: none
 };
-
-rhi::DeviceHandle open(const std::string& name, const Options& options) {
-  rhi::DeviceDesc desc;
-  desc.name = name;
-  desc.driver_validation = options.run.run.validation;
-  desc.on_message = print_message;
-  desc.thread_count = options.run.run.threads;
-  return create_device(desc);
-}
 
 Contents contents_of(rhi::Device& device, const BuiltJob& built) {
   program::Execution execution(device, built.job);
@@ -73,9 +62,10 @@ int diff_program(const Options& options) {
   if (!options.junit.empty())
     files.push_back({options.junit, [&](const std::filesystem::path& path) { write_text(path, junit); }});
   check_output_files(files);
-  const rhi::DeviceHandle a = open(options.a, options), b = open(options.b, options);
+  const RunOptions& run = options.run.run;
+  const rhi::DeviceHandle a = open_device(options.a, run), b = open_device(options.b, run);
   const ExplainedJob explained = explained_job(options.run, a->info());
-  const program::Tolerance tolerance = {options.run.run.tolerance.ulp, options.run.relative};
+  const program::Tolerance tolerance = {run.tolerance.ulp, options.run.relative};
 
   std::optional<ShownStage> stage("running on both devices");
   const Contents of_a = contents_of(*a, explained.built), of_b = contents_of(*b, explained.built);
@@ -90,14 +80,16 @@ int diff_program(const Options& options) {
   int code = exit_code::success;
   nlohmann::ordered_json explanation_json;
   if (!agrees) {
-    const rhi::DeviceHandle recording =
-        options.a == "cpu" ? create_device({.name = "cpu-scalar", .on_message = print_message}) : a;
+    const auto recording = [&](const std::string& name, const rhi::DeviceHandle& device) {
+      return recording_device(name) == name ? device : open_device(recording_device(name), run);
+    };
+    const rhi::DeviceHandle recorded_a = recording(options.a, a), recorded_b = recording(options.b, b);
     rhi::DeviceHandle exact;
-    if (!explained.built.job.top_levels.empty()) exact = open(options.arbiter, options);
+    if (!explained.built.job.top_levels.empty()) exact = open_device(options.arbiter, run);
     program::ExplainOptions wanted;
     wanted.exact = exact.get();
     stage.emplace("explaining the differences");
-    const program::Explanation explanation = program::explain(*recording, *b, explained.built.job, wanted);
+    const program::Explanation explanation = program::explain(*recorded_a, *recorded_b, explained.built.job, wanted);
     stage.reset();
     const program::Cause cause = program::gravest(explanation);
     const bool is_wrong = cause == program::Cause::mismatch;

@@ -7,13 +7,11 @@
 #include <string>
 
 #include "base/error.hpp"
-#include "devices/devices.hpp"
 #include "program/explain/explanation.hpp"
 #include "program/explain/text.hpp"
 #include "tools/command.hpp"
 #include "tools/options/device_options.hpp"
 #include "tools/options/option_values.hpp"
-#include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
@@ -38,19 +36,11 @@ struct Options {
   std::filesystem::path json;  ///< empty: none
 };
 
-rhi::DeviceHandle open(const std::string& name, const Options& options) {
-  rhi::DeviceDesc desc;
-  // With one lane the C++ compiler takes a tenth of the time for shaders that record. Results are the same.
-  desc.name = name == "cpu" ? "cpu-scalar" : name;
-  desc.driver_validation = options.run.run.validation;
-  desc.on_message = print_message;
-  desc.thread_count = options.run.run.threads;
-  return create_device(desc);
-}
-
 int explain_program(const Options& options) {
   if (!options.json.empty()) check_output_path(options.json);
-  const rhi::DeviceHandle a = open(options.a, options), b = open(options.b, options);
+  const RunOptions& run = options.run.run;
+  const rhi::DeviceHandle a = open_device(recording_device(options.a), run);
+  const rhi::DeviceHandle b = open_device(recording_device(options.b), run);
   const ExplainedJob explained = explained_job(options.run, a->info());
   program::ExplainOptions wanted{.invocation = options.invocation,
                                  .most_bytes = std::uint64_t{options.most_mebibytes} << 20,
@@ -63,7 +53,7 @@ int explain_program(const Options& options) {
     wanted.command = *options.command - 1;
   }
   rhi::DeviceHandle exact;
-  if (!explained.built.job.top_levels.empty()) exact = open(options.arbiter, options);
+  if (!explained.built.job.top_levels.empty()) exact = open_device(options.arbiter, run);
   wanted.exact = exact.get();
   std::optional<ShownStage> stage("recording on both devices");
   const program::Explanation explanation = program::explain(*a, *b, explained.built.job, wanted);

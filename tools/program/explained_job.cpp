@@ -9,8 +9,10 @@
 
 #include "base/error.hpp"
 #include "base/printable.hpp"
+#include "devices/devices.hpp"
 #include "program/amber/script_run.hpp"
 #include "rhi/glsl/compile.hpp"
+#include "tools/output/messages.hpp"
 #include "tools/program/loaded_program.hpp"
 #include "tools/program/needs.hpp"
 
@@ -60,6 +62,17 @@ ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo&
   }
   return {program.shaders.front().name, build_job(program, options)};
 }
+
+rhi::DeviceHandle open_device(const std::string& name, const RunOptions& options) {
+  rhi::DeviceDesc desc;
+  desc.name = name;
+  desc.driver_validation = options.validation;
+  desc.on_message = print_message;
+  desc.thread_count = options.threads;
+  return create_device(desc);
+}
+
+std::string recording_device(const std::string& name) { return name == "cpu" ? "cpu-scalar" : name; }
 
 std::array<std::uint32_t, 3> invocation_of(const char* option, const std::string& text) {
   std::array<std::uint32_t, 3> id = {};

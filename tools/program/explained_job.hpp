@@ -24,6 +24,13 @@ bool is_program_file(std::string_view file);
 /// Throws Error and rhi::Error, with the file or option at fault.
 ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo& device);
 
+/// A device with the options of the run.
+rhi::DeviceHandle open_device(const std::string& name, const RunOptions& options);
+
+/// The device on which "cpu" records: with one lane, for which the C++ compiler takes a tenth of the time. Results are
+/// the same. Every other device is itself.
+std::string recording_device(const std::string& name);
+
 /// "5", "5,2" or "5,2,0". Throws CLI::ValidationError, naming the option.
 std::array<std::uint32_t, 3> invocation_of(const char* option, const std::string& text);
 
