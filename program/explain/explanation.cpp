@@ -4,6 +4,8 @@
 #include <numeric>
 #include <utility>
 
+#include "program/compare/comparison.hpp"
+#include "program/data/texels.hpp"
 #include "program/execute/execution.hpp"
 #include "program/explain/output_sites.hpp"
 #include "program/lockstep/atomics.hpp"
@@ -111,9 +113,17 @@ class Selection {
   const ExplainOptions& options_;
 };
 
-std::vector<OutputState> compare_outputs(const Snapshot& inputs, const Snapshot& plain_a, const Snapshot& plain_b,
-                                         const Snapshot& recorded_a, const Snapshot& free_b, const Snapshot& forced_b,
-                                         const Snapshot& mirrored_a) {
+/// Whether the values are the same by their type: which pattern of bits a NaN has, Vulkan leaves open.
+bool holds_same(const Job& job, bool is_image, std::size_t index, const std::vector<std::byte>& a,
+                const std::vector<std::byte>& b) {
+  if (a == b) return true;
+  const ValueType type = is_image ? texture_type(job.images[index].desc) : job.buffers[index].type;
+  return scalar_count(type, a.size()) != 0 && compare(type, a, b, {}).agrees();
+}
+
+std::vector<OutputState> compare_outputs(const Job& job, const Snapshot& inputs, const Snapshot& plain_a,
+                                         const Snapshot& plain_b, const Snapshot& recorded_a, const Snapshot& free_b,
+                                         const Snapshot& forced_b, const Snapshot& mirrored_a) {
   std::vector<OutputState> outputs;
   const auto add = [&](bool is_image, auto member) {
     const auto& before = inputs.*member;
@@ -123,7 +133,7 @@ std::vector<OutputState> compare_outputs(const Snapshot& inputs, const Snapshot&
       outputs.push_back({.is_image = is_image,
                          .index = i,
                          .plain_equal = of_a == of_b,
-                         .forced_equal = (recorded_a.*member)[i] == (forced_b.*member)[i],
+                         .forced_equal = holds_same(job, is_image, i, (recorded_a.*member)[i], (forced_b.*member)[i]),
                          .record_changed_a = of_a != (recorded_a.*member)[i],
                          .record_changed_b = of_b != (free_b.*member)[i],
                          .order_changed = (recorded_a.*member)[i] != (mirrored_a.*member)[i]});
@@ -162,7 +172,7 @@ void add_output_sites(Explanation& result, const Snapshot& recorded_a, const Sna
   // Where memory depends on the order of invocations, it says nothing.
   std::vector<char> ignored(recorded_a.buffers.size(), 0);
   for (const OutputState& output : result.outputs)
-    if (!output.is_image && output.order_changed) ignored[output.index] = 1;
+    if (!output.is_image && (output.order_changed || output.forced_equal)) ignored[output.index] = 1;
   for (Site& site : output_sites(*result.launch, result.a, recorded_a, forced_b, ignored)) {
     std::vector<Site>& sites = result.lockstep.sites;
     const bool is_known = std::ranges::any_of(sites, [&](const Site& known) {
@@ -225,7 +235,7 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     execution.run();
     return snapshot_of(execution, single);
   };
-  result.outputs = compare_outputs(inputs, plain(a), plain(b), recorded_a, free_b, forced_b, mirrored_a);
+  result.outputs = compare_outputs(job, inputs, plain(a), plain(b), recorded_a, free_b, forced_b, mirrored_a);
   if (result.all_recorded) {
     add_output_sites(result, recorded_a, forced_b);
   } else {

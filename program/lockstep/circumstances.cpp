@@ -79,6 +79,20 @@ Judgement judge_load(const Walk& walk, const Divergence& difference) {
   return judgement(Cause::mismatch, "the variable holds another value");
 }
 
+/// Whether the pointer leads into shared memory that no store of the shader ever writes.
+bool is_never_stored(const Walk& walk, std::uint32_t pointer) {
+  const Module& module = walk.shader().module;
+  const std::uint32_t variable = walk.variable_of(pointer);
+  const auto found = module.definitions.find(variable);
+  if (found == module.definitions.end()) return false;
+  const Instruction& declared = module.instructions[found->second];
+  if (declared.op != spv::OpVariable || declared.words[3] != spv::StorageClassWorkgroup || declared.words.size() > 4)
+    return false;
+  return std::ranges::none_of(module.instructions, [&](const Instruction& instruction) {
+    return instruction.op == spv::OpStore && walk.variable_of(instruction.words[1]) == variable;
+  });
+}
+
 /// Filters may weigh texels with as few as 4 bits of the coordinates' fractions (VkPhysicalDeviceLimits::
 /// subTexelPrecisionBits), and 8 on every device that we know of; a sum of weighted texels errs by as much.
 bool is_near(const Divergence& difference) {
@@ -110,6 +124,9 @@ Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference,
       variables_of(circumstances.wrong_atomics)
           .contains({difference.shader, walk.variable_of(module.instructions[difference.instruction].words[3])}))
     return judgement(Cause::order, "a wrong atomic wrote it");
+  const bool is_atomic = op >= spv::OpAtomicLoad && op <= spv::OpAtomicXor && op != spv::OpAtomicStore;
+  if ((op == spv::OpLoad || is_atomic) && is_never_stored(walk, module.instructions[difference.instruction].words[3]))
+    return judgement(Cause::undefined, "shared memory begins with any value, and nothing stores another");
   if (circumstances.order_dependent.contains({difference.shader, difference.instruction}))
     return judgement(Cause::order, "the result depends on the order of the invocations");
   if (is_subgroup_operation(op) && !circumstances.same_subgroups)

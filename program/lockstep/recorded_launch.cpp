@@ -50,12 +50,14 @@ void for_each_stage(Stages& stages, const Visit& visit) {
   for (auto& stage : stages.callable) visit(stage);
 }
 
-/// The first binding of set 0 that no shader uses.
-std::uint32_t free_binding(const std::vector<FixedShader>& shaders) {
+/// The first binding of set 0 that no shader uses, and behind all that the pipeline binds.
+std::uint32_t free_binding(const std::vector<FixedShader>& shaders, const Pipeline& pipeline) {
   std::uint32_t binding = 0;
   for (const FixedShader& shader : shaders)
     for (const rhi::ShaderBinding& used : shader.reflection.bindings)
       if (used.set == 0) binding = std::max(binding, used.binding + 1);
+  for (const Binding& bound : pipeline.bindings)
+    if (bound.set == 0) binding = std::max(binding, bound.binding + 1);
   return binding;
 }
 
@@ -97,7 +99,7 @@ RecordedLaunch record_launch(const Job& job, const Command& command, RecordForm 
                 .samplers = job.samplers,
                 .bottom_levels = job.bottom_levels,
                 .top_levels = job.top_levels};
-  const std::uint32_t binding = free_binding(fixed);
+  const std::uint32_t binding = free_binding(fixed, pipeline);
   std::uint32_t next_segment = 1;  // 0 is what a slot holds where nothing was written
   for (const FixedShader& shader : fixed) {
     const Shader& original = job.shaders[shader.shader];
