@@ -55,10 +55,39 @@ Judgement against(const RecordedWords& expected, const Divergence& difference, s
   return result;
 }
 
+/// Whether an index on the way to a value lies outside of its array, matrix or vector.
+bool is_out_of_bounds(const Walk& walk, std::uint32_t pointer) {
+  const Module& module = walk.shader().module;
+  const auto found = module.definitions.find(pointer);
+  if (found == module.definitions.end()) return false;
+  const Instruction& chain = module.instructions[found->second];
+  if (chain.op != spv::OpAccessChain && chain.op != spv::OpInBoundsAccessChain) return false;
+  std::uint32_t type = definition(module, definition(module, chain.words[3]).type).words[3];
+  for (std::size_t i = 4; i < chain.words.size(); ++i) {
+    const Instruction& composite = definition(module, type);
+    const std::optional<RecordedWords> index = walk.value_of(chain.words[i]);
+    if (!index) return false;
+    const std::uint32_t at = index->words[0];
+    if (composite.op == spv::OpTypeStruct) {
+      type = composite.words[2 + at];
+      continue;
+    }
+    if ((composite.op == spv::OpTypeVector || composite.op == spv::OpTypeMatrix) && at >= composite.words[3])
+      return true;
+    if (composite.op == spv::OpTypeArray) {
+      const Instruction& length = definition(module, composite.words[3]);
+      if (length.op == spv::OpConstant && at >= length.words[3]) return true;
+    }
+    type = composite.words[2];
+  }
+  return is_out_of_bounds(walk, chain.words[3]);
+}
+
 Judgement judge_load(const Walk& walk, const Divergence& difference) {
   const Module& module = walk.shader().module;
   const Instruction& load = module.instructions[difference.instruction];
   const std::uint32_t pointer = load.words[3], variable = walk.variable_of(pointer);
+  if (is_out_of_bounds(walk, pointer)) return judgement(Cause::undefined, "an index is out of bounds");
   const auto found = module.definitions.find(variable);
   if (found == module.definitions.end() || module.instructions[found->second].op != spv::OpVariable)
     return judgement(Cause::mismatch, "the devices load other values");
@@ -66,6 +95,8 @@ Judgement judge_load(const Walk& walk, const Divergence& difference) {
   const auto storage = static_cast<spv::StorageClass>(declared.words[3]);
   const int built_in = built_in_of(module, variable);
   if (is_subgroup_input(built_in)) return judgement(Cause::device_defined, "each device forms its own subgroups");
+  const bool is_passed_on = storage == spv::StorageClassRayPayloadKHR || storage == spv::StorageClassCallableDataKHR;
+  if (is_passed_on && difference.parted) return judgement(Cause::order, "the ray has run other shaders");
   if (storage == spv::StorageClassInput) return judgement(Cause::mismatch, "an input has another value");
   if (storage != spv::StorageClassFunction && storage != spv::StorageClassPrivate)
     return judgement(Cause::mismatch, "memory holds another value");
@@ -93,16 +124,29 @@ bool is_never_stored(const Walk& walk, std::uint32_t pointer) {
   });
 }
 
-/// Filters may weigh texels with as few as 4 bits of the coordinates' fractions (VkPhysicalDeviceLimits::
-/// subTexelPrecisionBits), and 8 on every device that we know of; a sum of weighted texels errs by as much.
-bool is_near(const Divergence& difference) {
-  constexpr float bound = 0x1p-6f;
+/// Whether floats lie within `bound` of each other, relative to the larger and to 1.
+bool is_near(const Divergence& difference, float bound) {
   for (std::size_t i = 0; i < difference.a.words.size(); ++i) {
     if (difference.a.components[i].kind != ComponentKind::floating) return false;
     const float a = std::bit_cast<float>(difference.a.words[i]), b = std::bit_cast<float>(difference.b.words[i]);
     if (!(std::fabs(a - b) <= bound * std::max({1.0f, std::fabs(a), std::fabs(b)}))) return false;
   }
   return true;
+}
+
+/// Filters may weigh texels with as few as 4 bits of the coordinates' fractions (VkPhysicalDeviceLimits::
+/// subTexelPrecisionBits), and 8 on every device that we know of; a sum of weighted texels errs by as much.
+constexpr float filter_bound = 0x1p-6f;
+/// A normalised texel is a quotient of whole numbers: it may be off by a few units in the last place.
+constexpr float texel_bound = 0x1p-21f;
+
+/// Sums and products, which a driver may combine with others unless they are NoContraction.
+bool may_be_combined(const Module& module, const Instruction& instruction) {
+  if (instruction.op < spv::OpFNegate || instruction.op > spv::OpDot) return false;
+  return std::ranges::none_of(module.instructions, [&](const Instruction& each) {
+    return each.op == spv::OpDecorate && each.words[1] == instruction.result &&
+           each.words[2] == spv::DecorationNoContraction;
+  });
 }
 
 }  // namespace
@@ -113,7 +157,14 @@ Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference,
   const spv::Op op = module.instructions[difference.instruction].op;
   if (difference.is_address) return judgement(Cause::device_defined, "an address");
   if (op == spv::OpReadClockKHR) return judgement(Cause::device_defined, "a clock");
+  // Device a has written its result down, and gone on with its own values: only b's instructions stand alone.
+  constexpr double most_ulp = 16;
+  if (own.cause == Cause::mismatch && own.wrong == WrongDevice::a && own.error_a.value_or(0) <= most_ulp &&
+      may_be_combined(module, module.instructions[difference.instruction]))
+    return judgement(Cause::within_precision, "the first device may have combined it with other instructions");
   if (own.cause != Cause::mismatch || own.wrong != WrongDevice::unknown) return own;
+  if ((op == spv::OpImageRead || op == spv::OpImageFetch) && is_near(difference, texel_bound))
+    return judgement(Cause::within_precision, "a normalised texel may round");
   if (const auto wrong = circumstances.wrong_atomics.find({difference.shader, difference.instruction});
       wrong != circumstances.wrong_atomics.end()) {
     Judgement result = judgement(Cause::mismatch, "in no order of the invocations do the old values follow each other");
@@ -132,8 +183,8 @@ Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference,
   if (is_subgroup_operation(op) && !circumstances.same_subgroups)
     return judgement(Cause::device_defined, "the devices' subgroups have other sizes");
   if (is_filtered(op))
-    return is_near(difference) ? judgement(Cause::within_precision, "filters may round their weights")
-                               : judgement(Cause::mismatch, "more than filters may differ");
+    return is_near(difference, filter_bound) ? judgement(Cause::within_precision, "filters may round their weights")
+                                             : judgement(Cause::mismatch, "more than filters may differ");
   if (circumstances.rays != nullptr)
     if (std::optional<Judgement> of_ray = circumstances.rays->judge(walk, difference)) return *of_ray;
   if (op == spv::OpLoad) return judge_load(walk, difference);

@@ -37,6 +37,7 @@ struct Comparing {
   const Walk& walk;
   std::size_t slot;
   const Circumstances& circumstances;
+  const bool& parted;
 
   Divergence difference(const RecordedValue& value, std::size_t order, RecordedWords a, RecordedWords b) const {
     return difference_of(value.instruction, walk.position() + value.offset, value.is_address, order, std::move(a),
@@ -52,6 +53,7 @@ struct Comparing {
                           .position = position,
                           .order = order,
                           .is_address = is_address,
+                          .parted = parted,
                           .operands = operands_of(walk, module.instructions[i]),
                           .a = std::move(a),
                           .b = std::move(b),
@@ -130,9 +132,9 @@ LockstepComparison compare_lockstep(const RecordedLaunch& launch, const Recordin
     const SlotView slot_a = slot_of(a.request, a.buffer, slot), slot_b = slot_of(b.request, b.buffer, slot);
     if (!slot_a.complete) ++result.incomplete;
     Walk walk(launch, slot_a);
-    const Comparing comparing{walk, slot, circumstances};
-    std::size_t order = 0, last_instruction = 0;
     bool parted = false;
+    const Comparing comparing{walk, slot, circumstances, parted};
+    std::size_t order = 0, last_instruction = 0;
     while (walk.next()) {
       const bool same = walk.position() + walk.segment().words <= slot_b.words.size() &&
                         slot_b.words[walk.position()] == walk.number();
@@ -190,7 +192,8 @@ FirstDivergence first_divergence(const RecordedLaunch& launch, const Recording& 
                                  const Circumstances& circumstances) {
   const SlotView slot_a = slot_of(a.request, a.buffer, slot), slot_b = slot_of(b.request, b.buffer, slot);
   Walk walk(launch, slot_a), other(launch, slot_b);
-  const Comparing comparing{walk, slot, circumstances};
+  const bool parted = false;
+  const Comparing comparing{walk, slot, circumstances, parted};
   FirstDivergence first;
   std::size_t order = 0;
   while (!first.decision && walk.next() && other.next()) {

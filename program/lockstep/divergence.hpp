@@ -21,6 +21,7 @@ struct Divergence {
   std::size_t position = 0;  ///< of the value in the slot's words
   std::size_t order = 0;     ///< how many values the invocation had recorded before
   bool is_address = false;
+  bool parted = false;                                 ///< before it, a ray has run other shaders on the second device
   std::vector<std::optional<RecordedWords>> operands;  ///< by Instruction::used_ids
   RecordedWords a, b;
   Judgement judgement;

@@ -93,6 +93,20 @@ std::optional<Question> question_of_input(const Module& module, std::uint32_t va
   }
 }
 
+/// Whether a ray may show a shader what it meets before it is committed.
+bool has_candidates(const Job& job) {
+  for (const BottomLevel& level : job.bottom_levels)
+    for (const auto& geometry : level.geometries) {
+      const auto* triangles = std::get_if<Triangles>(&geometry);
+      if (triangles == nullptr || !rhi::has(triangles->flags, rhi::GeometryFlags::opaque)) return true;
+    }
+  return std::ranges::any_of(job.top_levels, [](const TopLevel& top) {
+    return std::ranges::any_of(top.instances, [](const Instance& instance) {
+      return rhi::has(instance.flags, rhi::InstanceFlags::force_no_opaque);
+    });
+  });
+}
+
 /// In [-1, 1], the same for the same numbers.
 float spread(std::uint32_t ray, std::uint32_t axis) {
   std::uint32_t x = ray * 0x9e3779b9u + axis * 0x85ebca6bu;
@@ -142,7 +156,8 @@ struct RayArbiter::Tracer {
   std::unique_ptr<Execution> execution;
 };
 
-RayArbiter::RayArbiter(rhi::Device& exact, const Job& job) : exact_(exact), job_(job), extent_(extent()) {}
+RayArbiter::RayArbiter(rhi::Device& exact, const Job& job)
+    : exact_(exact), job_(job), extent_(extent()), has_candidates_(has_candidates(job)) {}
 
 RayArbiter::~RayArbiter() = default;
 

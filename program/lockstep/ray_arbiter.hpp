@@ -40,7 +40,8 @@ class RayArbiter {
 
   rhi::Device& exact_;
   const Job& job_;
-  float extent_ = 1;                                                ///< the largest coordinate of the scene
+  float extent_ = 1;  ///< the largest coordinate of the scene
+  bool has_candidates_ = false;
   mutable std::map<std::size_t, std::unique_ptr<Tracer>> tracers_;  ///< by top level, each made once it is needed
 };
 
