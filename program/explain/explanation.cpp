@@ -158,13 +158,30 @@ bool can_be_mirrored(const Command& command) {
   return dispatch == nullptr || dispatch->base_workgroup == std::array<std::uint32_t, 3>{};
 }
 
-/// Whether something differs that the order of invocations may explain.
-bool is_open(const LockstepComparison& lockstep, const Snapshot& recorded_a, const Snapshot& forced_b) {
+bool is_open(const Judgement& judgement) {
+  return judgement.cause == Cause::mismatch && judgement.wrong == WrongDevice::unknown;
+}
+
+/// Whether something differs that the order of invocations may explain. A race may come out alike in lockstep, and
+/// differ where device b runs free.
+bool is_open(const Explanation& explanation, const Snapshot& recorded_a, const Snapshot& forced_b) {
+  const auto is_open_difference = [](const std::optional<Divergence>& each) {
+    return each && is_open(each->judgement);
+  };
   return recorded_a.buffers != forced_b.buffers || recorded_a.images != forced_b.images ||
-         std::ranges::any_of(lockstep.sites, [](const Site& site) {
-           return site.example.judgement.cause == Cause::mismatch &&
-                  site.example.judgement.wrong == WrongDevice::unknown;
+         std::ranges::any_of(explanation.lockstep.sites,
+                             [](const Site& site) { return is_open(site.example.judgement); }) ||
+         std::ranges::any_of(explanation.first, [&](const FirstDivergence& first) {
+           return is_open_difference(first.value) || is_open_difference(first.decision);
          });
+}
+
+/// Judges what the recordings differ in.
+void compare(Explanation& result, const Circumstances& circumstances) {
+  result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
+  result.first.clear();
+  for (std::size_t slot = 0; slot < result.a.request.invocations.size(); ++slot)
+    result.first.push_back(first_divergence(*result.launch, result.a, result.free, slot, circumstances));
 }
 
 /// Adds what is to blame for memory that differs although all values agree.
@@ -214,18 +231,20 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     rays.emplace(*options.exact, result.launch->job);
     circumstances.rays = &*rays;
   }
-  result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
+  compare(result, circumstances);
   Snapshot mirrored_a = recorded_a;
-  if (options.check_order && can_be_mirrored(command) && is_open(result.lockstep, recorded_a, forced_b)) {
+  if (options.check_order && can_be_mirrored(command) && is_open(result, recorded_a, forced_b)) {
     RecordedExecution& mirror = on_a.of(RecordForm::lockstep, true);
     const Recording mirrored = mirror.replay(result.a, true);
     circumstances.order_dependent = differing_sites(*result.launch, result.a, mirrored);
-    if (result.all_recorded) circumstances.wrong_atomics = wrong_atomics(*result.launch, result.a, result.forced);
+    if (result.all_recorded) {
+      AtomicFindings atomics = judge_atomics(*result.launch, result.a, result.forced);
+      circumstances.wrong_atomics = std::move(atomics.wrong);
+      circumstances.order_dependent.merge(atomics.contended);
+    }
     mirrored_a = mirror.outputs();
-    result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
+    compare(result, circumstances);
   }
-  for (std::size_t slot = 0; slot < selection.invocations.size(); ++slot)
-    result.first.push_back(first_divergence(*result.launch, result.a, result.free, slot, circumstances));
 
   Job single = job;
   single.commands = {command};

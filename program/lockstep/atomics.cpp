@@ -143,15 +143,17 @@ std::map<Location, std::vector<AtomicUse>> uses_of(const RecordedLaunch& launch,
 
 }  // namespace
 
-std::map<SiteKey, WrongDevice> wrong_atomics(const RecordedLaunch& launch, const Recording& a, const Recording& b) {
-  std::map<SiteKey, WrongDevice> wrong;
+AtomicFindings judge_atomics(const RecordedLaunch& launch, const Recording& a, const Recording& b) {
+  AtomicFindings findings;
   for (const auto& [location, uses] : uses_of(launch, a, b)) {
     const bool of_a = is_chain(uses, &AtomicUse::old_a), of_b = is_chain(uses, &AtomicUse::old_b);
-    // Where neither is one, memory is written in other ways too.
-    if (of_a == of_b) continue;
-    for (const AtomicUse& use : uses) wrong.emplace(use.site, of_a ? WrongDevice::b : WrongDevice::a);
+    for (const AtomicUse& use : uses) {
+      // Where neither is one, memory is written in other ways too.
+      if (of_a != of_b) findings.wrong.emplace(use.site, of_a ? WrongDevice::b : WrongDevice::a);
+      if (of_a && of_b && uses.size() > 1) findings.contended.insert(use.site);
+    }
   }
-  return wrong;
+  return findings;
 }
 
 std::set<std::pair<const RecordedShader*, std::uint32_t>> variables_of(const std::map<SiteKey, WrongDevice>& atomics) {

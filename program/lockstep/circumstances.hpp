@@ -16,7 +16,7 @@ class RayArbiter;
 /// What is known of a launch beside its instructions' operands.
 struct Circumstances {
   std::set<SiteKey> order_dependent = {};             ///< give other results when the invocations run in another order
-  std::map<SiteKey, WrongDevice> wrong_atomics = {};  ///< what wrong_atomics() found
+  std::map<SiteKey, WrongDevice> wrong_atomics = {};  ///< AtomicFindings::wrong
   bool same_subgroups = true;                         ///< both devices form subgroups of one size
   const RayArbiter* rays = nullptr;                   ///< decides about rays; null: nobody does
 };

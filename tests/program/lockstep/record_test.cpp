@@ -243,16 +243,18 @@ TANDEM_DEVICE_TEST("mirrored, a launch computes the same, but for what depends o
     CHECK(mirror.outputs().buffers[1] == recorder.outputs().buffers[1]);
   }
 
+  // One workgroup: which of several comes first is open.
   Job tickets = job;
+  tickets.commands = {Dispatch{.workgroup_count = {1, 1, 1}}};
   tickets.shaders[0].spirv = glsl::compile(R"(#version 460
-    layout(local_size_x = 4) in;
+    layout(local_size_x = 8) in;
     layout(set = 0, binding = 3) buffer Out { uint next; uint result[]; };
     void main() { result[gl_GlobalInvocationID.x] = atomicAdd(next, 1u) * 2u; })",
                                            rhi::ShaderStage::compute, "tickets");
-  const RecordedLaunch to_record_tickets = record_launch(tickets, job.commands[0], RecordForm::record);
+  const RecordedLaunch to_record_tickets = record_launch(tickets, tickets.commands[0], RecordForm::record);
   RecordedExecution ticket_recorder(recording(device_name), to_record_tickets, inputs_of(job));
   const Recording of_tickets = ticket_recorder.record(all_of(to_record_tickets), plenty);
-  const RecordedLaunch to_mirror_tickets = record_launch(tickets, job.commands[0], RecordForm::lockstep, true);
+  const RecordedLaunch to_mirror_tickets = record_launch(tickets, tickets.commands[0], RecordForm::lockstep, true);
   RecordedExecution ticket_mirror(recording(device_name), to_mirror_tickets, inputs_of(job));
   // Every invocation draws another ticket; its product has the recorded operand.
   CHECK(count_differences(of_tickets, ticket_mirror.replay(of_tickets, true)) == 8);
