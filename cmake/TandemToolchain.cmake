@@ -39,9 +39,9 @@ function(tandem_target target)
 endfunction()
 
 # What most files of the project include: with tandem_precompile_headers, a third of the time to compile one is saved.
-set(TANDEM_COMMON_HEADERS
-    <algorithm> <array> <cmath> <cstddef> <cstdint> <cstring> <filesystem> <functional> <limits> <map> <memory> <optional>
-    <span> <string> <string_view> <utility> <vector> <fmt/format.h> <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp> <glm/vec4.hpp>)
+set(TANDEM_STANDARD_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <cstring> <filesystem> <functional> <limits> <map>
+                            <memory> <optional> <span> <string> <string_view> <utility> <vector>)
+set(TANDEM_COMMON_HEADERS ${TANDEM_STANDARD_HEADERS} <fmt/format.h> <glm/geometric.hpp> <glm/vec2.hpp> <glm/vec3.hpp> <glm/vec4.hpp>)
 
 # tandem_precompile_headers(TARGET HEADER... | REUSE_FROM TARGET): target_precompile_headers, in a form that ccache can keep. Every
 # file still includes what it uses: with CMAKE_DISABLE_PRECOMPILE_HEADERS, as in the preset clang, it compiles without.

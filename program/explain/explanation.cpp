@@ -10,6 +10,7 @@
 #include "program/explain/output_sites.hpp"
 #include "program/lockstep/atomics.hpp"
 #include "program/lockstep/ray_arbiter.hpp"
+#include "program/record/contraction.hpp"
 #include "rhi/error.hpp"
 
 namespace tandem::program {
@@ -176,6 +177,20 @@ bool is_open(const Explanation& explanation, const Snapshot& recorded_a, const S
          });
 }
 
+/// Whether what is wrong may be right where the first device combines it with other instructions.
+bool may_be_combined(const Explanation& explanation) {
+  const auto is_wrong_arithmetic = [](const Divergence& each) {
+    return each.judgement.cause == Cause::mismatch &&
+           may_be_contracted(each.shader->module, each.shader->module.instructions[each.instruction]);
+  };
+  return std::ranges::any_of(explanation.lockstep.sites,
+                             [&](const Site& site) { return is_wrong_arithmetic(site.example); }) ||
+         std::ranges::any_of(explanation.first, [&](const FirstDivergence& first) {
+           return (first.value && is_wrong_arithmetic(*first.value)) ||
+                  (first.decision && is_wrong_arithmetic(*first.decision));
+         });
+}
+
 /// Judges what the recordings differ in.
 void compare(Explanation& result, const Circumstances& circumstances) {
   result.lockstep = compare_lockstep(*result.launch, result.a, result.forced, circumstances);
@@ -232,6 +247,12 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
     circumstances.rays = &*rays;
   }
   compare(result, circumstances);
+  std::optional<Recording> alone_a;
+  if (may_be_combined(result)) {
+    alone_a = on_a.of(RecordForm::lockstep).replay(result.a, true);
+    circumstances.alone_a = &*alone_a;
+    compare(result, circumstances);
+  }
   Snapshot mirrored_a = recorded_a;
   if (options.check_order && can_be_mirrored(command) && is_open(result, recorded_a, forced_b)) {
     RecordedExecution& mirror = on_a.of(RecordForm::lockstep, true);

@@ -140,15 +140,6 @@ constexpr float filter_bound = 0x1p-6f;
 /// A normalised texel is a quotient of whole numbers: it may be off by a few units in the last place.
 constexpr float texel_bound = 0x1p-21f;
 
-/// Sums and products, which a driver may combine with others unless they are NoContraction.
-bool may_be_combined(const Module& module, const Instruction& instruction) {
-  if (instruction.op < spv::OpFNegate || instruction.op > spv::OpDot) return false;
-  return std::ranges::none_of(module.instructions, [&](const Instruction& each) {
-    return each.op == spv::OpDecorate && each.words[1] == instruction.result &&
-           each.words[2] == spv::DecorationNoContraction;
-  });
-}
-
 }  // namespace
 
 Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference, const Circumstances& circumstances) {
@@ -157,11 +148,6 @@ Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference,
   const spv::Op op = module.instructions[difference.instruction].op;
   if (difference.is_address) return judgement(Cause::device_defined, "an address");
   if (op == spv::OpReadClockKHR) return judgement(Cause::device_defined, "a clock");
-  // Device a has written its result down, and gone on with its own values: only b's instructions stand alone.
-  constexpr double most_ulp = 16;
-  if (own.cause == Cause::mismatch && own.wrong == WrongDevice::a && own.error_a.value_or(0) <= most_ulp &&
-      may_be_combined(module, module.instructions[difference.instruction]))
-    return judgement(Cause::within_precision, "the first device may have combined it with other instructions");
   if (own.cause != Cause::mismatch || own.wrong != WrongDevice::unknown) return own;
   if ((op == spv::OpImageRead || op == spv::OpImageFetch) && is_near(difference, texel_bound))
     return judgement(Cause::within_precision, "a normalised texel may round");

@@ -7,6 +7,7 @@
 
 #include "program/cause/judgement.hpp"
 #include "program/lockstep/divergence.hpp"
+#include "program/lockstep/recorded_execution.hpp"
 #include "program/lockstep/walk.hpp"
 
 namespace tandem::program {
@@ -18,7 +19,10 @@ struct Circumstances {
   std::set<SiteKey> order_dependent = {};             ///< give other results when the invocations run in another order
   std::map<SiteKey, WrongDevice> wrong_atomics = {};  ///< AtomicFindings::wrong
   bool same_subgroups = true;                         ///< both devices form subgroups of one size
-  const RayArbiter* rays = nullptr;                   ///< decides about rays; null: nobody does
+  /// Device a forced along its own recording, so that each instruction stands alone as those of device b do: where a
+  /// driver combines arithmetic with other instructions, it gives another result than the recorded one. Null: unknown.
+  const Recording* alone_a = nullptr;
+  const RayArbiter* rays = nullptr;  ///< decides about rays; null: nobody does
 };
 
 /// The judgement about a difference of an instruction whose operands do not determine its result: a load, an atomic, an

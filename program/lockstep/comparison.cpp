@@ -7,6 +7,7 @@
 
 #include "program/cause/judge.hpp"
 #include "program/lockstep/walk.hpp"
+#include "program/record/contraction.hpp"
 
 namespace tandem::program {
 namespace {
@@ -58,10 +59,36 @@ struct Comparing {
                           .a = std::move(a),
                           .b = std::move(b),
                           .judgement = {}};
-    difference.judgement = judge(module, module.instructions[i], difference.operands, difference.a, difference.b,
-                                 [&](std::uint32_t id) { return walk.value_of(id); });
+    difference.judgement = judged(difference, difference.a);
+    if (std::optional<Judgement> combined = judge_combined(difference)) difference.judgement = std::move(*combined);
     difference.judgement = judge_by_circumstances(walk, difference, circumstances);
     return difference;
+  }
+
+  Judgement judged(const Divergence& difference, const RecordedWords& a) const {
+    const Module& module = walk.shader().module;
+    return judge(module, module.instructions[difference.instruction], difference.operands, a, difference.b,
+                 [&](std::uint32_t id) { return walk.value_of(id); });
+  }
+
+  /// The judgement about what device a's instruction gives alone, where that is not what it has recorded.
+  std::optional<Judgement> judge_combined(const Divergence& difference) const {
+    const Module& module = walk.shader().module;
+    if (circumstances.alone_a == nullptr || difference.judgement.cause != Cause::mismatch ||
+        !may_be_contracted(module, module.instructions[difference.instruction]))
+      return std::nullopt;
+    const SlotView alone = slot_of(circumstances.alone_a->request, circumstances.alone_a->buffer, slot);
+    if (difference.position + difference.a.words.size() > alone.words.size() ||
+        alone.words[walk.position()] != walk.number())
+      return std::nullopt;
+    const RecordedWords a = words_at(alone, difference.position, difference.a.components);
+    if (a.words == difference.a.words) return std::nullopt;
+    Judgement of_alone = judged(difference, a);
+    if (a.words == difference.b.words || of_alone.cause != Cause::mismatch)
+      return Judgement{.cause = Cause::within_precision,
+                       .wrong = WrongDevice::none,
+                       .reason = "the first device combines it with other instructions"};
+    return of_alone;
   }
 };
 

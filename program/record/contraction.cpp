@@ -14,7 +14,23 @@ bool is_arithmetic(spv::Op op) {
          op == spv::OpExtInst;
 }
 
+bool computes_floats(const Module& module, const Instruction& instruction) {
+  if (!is_arithmetic(instruction.op)) return false;
+  const auto components = components_of(module, instruction.type);
+  return components && std::ranges::any_of(*components, [](const Component& component) {
+           return component.kind == ComponentKind::floating;
+         });
+}
+
 }  // namespace
+
+bool may_be_contracted(const Module& module, const Instruction& instruction) {
+  return computes_floats(module, instruction) &&
+         std::ranges::none_of(module.instructions, [&](const Instruction& each) {
+           return each.op == spv::OpDecorate && each.words[1] == instruction.result &&
+                  each.words[2] == spv::DecorationNoContraction;
+         });
+}
 
 std::vector<std::uint32_t> without_contraction(const Module& module) {
   std::vector<std::uint32_t> spirv(module.header.begin(), module.header.end());
@@ -30,11 +46,7 @@ std::vector<std::uint32_t> without_contraction(const Module& module) {
   }
   for (std::size_t i = module.first_function; i < module.instructions.size(); ++i) {
     const Instruction& instruction = module.instructions[i];
-    if (!is_arithmetic(instruction.op) || decorated.contains(instruction.result)) continue;
-    const auto components = components_of(module, instruction.type);
-    if (components && std::ranges::any_of(*components, [](const Component& component) {
-          return component.kind == ComponentKind::floating;
-        }))
+    if (computes_floats(module, instruction) && !decorated.contains(instruction.result))
       append(encode(spv::OpDecorate, {instruction.result, spv::DecorationNoContraction}));
   }
   for (std::size_t i = module.first_global; i < module.instructions.size(); ++i) append(module.instructions[i].words);

@@ -11,7 +11,7 @@ namespace tandem::compare {
 namespace {
 
 TEST_CASE("devices may be off by what the shader's offset of rays allows them") {
-  std::ifstream file(std::string(TANDEM_SOURCE_DIRECTORY) + "/shaders/geometry/offset_ray.glsl");
+  std::ifstream file(TANDEM_SOURCE_DIRECTORY "/shaders/geometry/offset_ray.glsl");
   REQUIRE(file.is_open());
   std::stringstream shader;
   shader << file.rdbuf();

@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <random>
 #include <string>
@@ -13,7 +14,7 @@ using namespace tandem::program::amber;
 
 namespace {
 
-Script parsed(const std::string& text) { return parse("#!amber\n" + text, "folder/test.amber"); }
+Script parsed(const std::string& text) { return parse(std::string("#!amber\n").append(text), "folder/test.amber"); }
 
 /// The error of a script whose second line is the first of the text; "" where there is none.
 std::string refusal(const std::string& text) {
@@ -197,7 +198,8 @@ TEST_CASE("a word in a shader is no END unless it stands alone") {
 
 TEST_CASE("SPIRV-HEX is words or bytes") {
   const auto words = [](const std::string& text) {
-    Script script = parsed("SHADER compute c SPIRV-HEX\n" + text + "\nEND\nPIPELINE compute p\nATTACH c\nEND\n");
+    Script script =
+        parsed(std::string("SHADER compute c SPIRV-HEX\n").append(text) + "\nEND\nPIPELINE compute p\nATTACH c\nEND\n");
     compile(script);
     return script.job.shaders.at(0).spirv;
   };
@@ -247,7 +249,7 @@ probe ssbo uint 0 4 >= 1
 
   const auto error = [](const std::string& command) -> std::string {
     try {
-      parse("[compute shader]\nvoid main() {}\n[test]\n" + command, "x.amber");
+      parse(std::string("[compute shader]\nvoid main() {}\n[test]\n").append(command), "x.amber");
     } catch (const ScriptError& wrong) {
       return wrong.what();
     }
@@ -268,7 +270,7 @@ TEST_CASE("a mutated script is parsed or refused in one sentence") {
   const auto below = [&](std::size_t count) { return static_cast<std::size_t>(random() % count); };
   for (const char* name : {"types", "struct", "image", "repeat", "ray_query", "ray_pipeline"}) {
     const std::string original =
-        tandem::read_text(std::string(TANDEM_SOURCE_DIRECTORY) + "/tests/program/amber/" + name + ".amber");
+        tandem::read_text(fmt::format("{}/tests/program/amber/{}.amber", TANDEM_SOURCE_DIRECTORY, name));
     for (int i = 0; i < 300; ++i) {
       std::string text = original;
       for (std::size_t edits = 1 + below(4); edits > 0 && text.size() > 20; --edits) {

@@ -2,7 +2,10 @@
 
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cstdint>
+#include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -120,4 +123,129 @@ TANDEM_DEVICE_TEST("a variable into which nothing was stored may hold anything")
   REQUIRE(explanation.lockstep.sites.size() == 1);
   CHECK(explanation.lockstep.sites[0].example.judgement.cause == program::Cause::undefined);
   CHECK(program::gravest(explanation) == program::Cause::undefined);
+}
+
+namespace {
+
+/// Changes what an opcode gives where that is a float, by some ulp: counters and what records hold are integers.
+ShaderEdit floats_moved(spv::Op opcode, std::int32_t ulp) {
+  return edited_results(opcode, [ulp](CodeWriter& code, std::uint32_t value) {
+    return code.module().type_of(value) == code.module().float_type() ? moved_by_ulp(code, value, ulp) : value;
+  });
+}
+
+program::Job product(const std::string& qualifier) {
+  program::Job job = job_of(R"(
+    layout(set = 0, binding = 0) buffer Result { float x, y, product; };
+    void main() {
+      )" + qualifier + R"( float result = x * y;
+      product = result;
+    })");
+  const std::array<float, 2> factors = {1.25f, 3.5f};
+  std::memcpy(job.buffers[0].initial.data(), factors.data(), sizeof(factors));
+  return job;
+}
+
+/// The one judgement where an edited device is compared with one that is not.
+program::Judgement judged(const program::Job& job, rhi::Device& a, rhi::Device& b) {
+  const program::Explanation explanation = program::explain(a, b, job, {});
+  REQUIRE(explanation.lockstep.sites.size() == 1);
+  CHECK(program::gravest(explanation) == explanation.lockstep.sites[0].example.judgement.cause);
+  return explanation.lockstep.sites[0].example.judgement;
+}
+
+}  // namespace
+
+TANDEM_DEVICE_TEST("the first device may combine a product with others, unless it is precise") {
+  rhi::Device& b = *test::device("cpu-scalar");
+  // Combined in the plain and the recorded form of the shader, which come first, not where instructions stand alone.
+  const auto combining = [&] {
+    return edited(device_name,
+                  [edit = floats_moved(spv::OpFMul, 4), forms = std::make_shared<int>(0)](
+                      SpirvModule& module, rhi::ShaderStage stage) { return (*forms)++ < 2 && edit(module, stage); });
+  };
+  CHECK(judged(product(""), *combining(), b).cause == program::Cause::within_precision);
+  const program::Judgement precise = judged(product("precise"), *combining(), b);
+  CHECK(precise.cause == program::Cause::mismatch);
+  CHECK(precise.wrong == program::WrongDevice::a);
+  // Wrong alone, too.
+  const rhi::DeviceHandle wrong = edited(device_name, floats_moved(spv::OpFMul, 4));
+  const program::Judgement of_a = judged(product(""), *wrong, b);
+  CHECK(of_a.cause == program::Cause::mismatch);
+  CHECK(of_a.wrong == program::WrongDevice::a);
+  CHECK(judged(product(""), b, *wrong).wrong == program::WrongDevice::b);
+}
+
+TANDEM_DEVICE_TEST("a normalised texel may be rounded, and no more") {
+  program::Job job = job_of(R"(
+    layout(set = 0, binding = 0) buffer Result { vec4 texel; };
+    layout(set = 0, binding = 1, rgba8) uniform readonly image2D image;
+    void main() { texel = imageLoad(image, ivec2(0)); })");
+  rhi::TextureDesc desc;
+  desc.label = "image";
+  job.images = {{.desc = desc, .initial = {std::byte{51}, std::byte{102}, std::byte{85}, std::byte{255}}}};
+  job.pipelines[0].bindings.push_back({.set = 0, .binding = 1, .resource = program::ImageUse{.image = 0}});
+  const auto nudged = [&](float scale) {
+    return edited(device_name, edited_results(spv::OpImageRead, [scale](CodeWriter& code, std::uint32_t value) {
+                    const std::uint32_t type = code.module().type_of(value);
+                    return code.value(spv::OpVectorTimesScalar, type, {value, code.module().constant(scale)});
+                  }));
+  };
+  CHECK(judged(job, *test::device("cpu-scalar"), *nudged(1 + 0x1p-22f)).cause == program::Cause::within_precision);
+  CHECK(judged(job, *test::device("cpu-scalar"), *nudged(1 + 0x1p-16f)).cause == program::Cause::mismatch);
+}
+
+TANDEM_DEVICE_TEST("an index out of bounds reads anything, and one within bounds what was stored") {
+  for (const std::uint32_t index : {3u, 4u}) {
+    program::Job job = job_of(R"(
+      layout(set = 0, binding = 0) buffer Result { uint index; float value; };
+      void main() {
+        float values[4] = {1.0, 2.0, 3.0, 4.0};
+        values[index & 2u] = 5.0;
+        value = values[index];
+      })");
+    std::memcpy(job.buffers[0].initial.data(), &index, sizeof(index));
+    const program::Judgement judgement =
+        judged(job, *test::device("cpu-scalar"), *edited(device_name, floats_moved(spv::OpLoad, 1)));
+    CHECK(judgement.cause == (index == 3 ? program::Cause::mismatch : program::Cause::undefined));
+  }
+}
+
+TANDEM_DEVICE_TEST("shared memory that nothing stores into holds anything") {
+  const ShaderEdit edit = edited_results(spv::OpLoad, [](CodeWriter& code, std::uint32_t value) {
+    const std::uint32_t type = code.module().float_type();
+    if (code.module().type_of(value) != type) return value;
+    return code.value(spv::OpFAdd, type, {value, code.module().constant(1.0f)});
+  });
+  for (const bool stored : {false, true}) {
+    const program::Job job = job_of(std::string(R"(
+      layout(set = 0, binding = 0) buffer Result { float value; };
+      shared float memory;
+      void main() {)") + (stored ? "memory = 2.0; barrier();" : "") +
+                                    " value = memory; }");
+    const program::Judgement judgement = judged(job, *test::device("cpu-scalar"), *edited(device_name, edit));
+    CHECK(judgement.cause == (stored ? program::Cause::mismatch : program::Cause::undefined));
+  }
+}
+
+TANDEM_DEVICE_TEST("candidates come in any order, and what is committed does not") {
+  for (const bool committed : {false, true}) {
+    // Behind the last candidate a query has none: it is asked for while there is one.
+    const std::string body = committed ? "rayQueryConfirmIntersectionEXT(query); primitive = "
+                                         "rayQueryGetIntersectionPrimitiveIndexEXT(query, true);"
+                                       : "primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, false);";
+    program::Job job = job_of(R"(
+      layout(set = 0, binding = 0) buffer Result { int primitive; };
+      layout(set = 0, binding = 1) uniform accelerationStructureEXT scene;
+      void main() {
+        rayQueryEXT query;
+        rayQueryInitializeEXT(query, scene, gl_RayFlagsNoOpaqueEXT, 0xff, vec3(0.25, 0.25, 0), 0.0, vec3(0, 0, 1), 9.0);
+        while (rayQueryProceedEXT(query)) {)" +
+                              body + "} }");
+    add_square(job);
+    const program::Explanation explanation = explained(job, *edited(device_name, other_primitive));
+    REQUIRE(explanation.lockstep.sites.size() == 1);
+    CHECK(explanation.lockstep.sites[0].example.judgement.cause ==
+          (committed ? program::Cause::mismatch : program::Cause::order));
+  }
 }
