@@ -177,6 +177,12 @@ void DeviceScene::set_lights(rhi::Device& device, std::span<const PunctualLight>
   if (!lights.empty()) features_ |= feature::lights;
 }
 
+std::uint64_t DeviceScene::structure_bytes() const {
+  std::uint64_t bytes = top_level_->sizes().structure;
+  for (const BottomLevel& level : bottom_levels_) bytes += level.structure->sizes().structure;
+  return bytes;
+}
+
 void DeviceScene::describe(RenderConstants& constants) const {
   constants.triangle_count = triangle_count_;
   constants.opaque_count = opaque_count_;

@@ -43,6 +43,8 @@ class DeviceScene {
   /// What the shaders must be able to do for it.
   Features features() const noexcept { return features_; }
   std::uint32_t light_count() const noexcept { return light_count_; }
+  /// Memory of the acceleration structures, in bytes; known once they are built.
+  std::uint64_t structure_bytes() const;
   /// Of the scene.
   const std::optional<Environment>& environment() const noexcept { return environment_; }
 

@@ -49,6 +49,8 @@ class SceneOnDevice {
   /// Time that building the acceleration structures took: by the device's timestamps where it has them, else by the
   /// host's clock.
   double build_milliseconds() const noexcept { return build_milliseconds_; }
+  /// Memory of the acceleration structures, in bytes.
+  std::uint64_t structure_bytes() const { return scene_.structure_bytes(); }
 
   /// The program for the scene and its settings, made when it is first asked for.
   const PathTraceProgram& program(PathTraceTask task);

@@ -240,6 +240,7 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
   result.launch = on_a.take_launch(RecordForm::record);
 
   Circumstances circumstances;
+  circumstances.subgroup_size = a.info().limits.subgroup_size;
   circumstances.same_subgroups = a.info().limits.subgroup_size == b.info().limits.subgroup_size;
   std::optional<RayArbiter> rays;
   if (options.exact != nullptr && !job.top_levels.empty()) {

@@ -41,6 +41,14 @@ bool is_subgroup_operation(spv::Op op) {
          (op >= spv::OpSubgroupBallotKHR && op <= spv::OpSubgroupReadInvocationKHR);
 }
 
+/// Whether an operation asks for the value of an invocation that no subgroup has.
+bool is_beyond_subgroup(const Walk& walk, const Instruction& instruction, std::uint32_t subgroup_size) {
+  if (instruction.op != spv::OpGroupNonUniformShuffle && instruction.op != spv::OpGroupNonUniformBroadcast)
+    return false;
+  const std::optional<RecordedWords> id = walk.value_of(instruction.words[5]);
+  return subgroup_size != 0 && id && id->words[0] >= subgroup_size;
+}
+
 bool is_filtered(spv::Op op) {
   return (op >= spv::OpImageSampleImplicitLod && op <= spv::OpImageSampleProjDrefExplicitLod) ||
          op == spv::OpImageGather || op == spv::OpImageDrefGather;
@@ -168,6 +176,8 @@ Judgement judge_by_circumstances(const Walk& walk, const Divergence& difference,
     return judgement(Cause::order, "the result depends on the order of the invocations");
   if (is_subgroup_operation(op) && !circumstances.same_subgroups)
     return judgement(Cause::device_defined, "the devices' subgroups have other sizes");
+  if (is_beyond_subgroup(walk, module.instructions[difference.instruction], circumstances.subgroup_size))
+    return judgement(Cause::undefined, "the subgroup has no such invocation");
   if (is_filtered(op))
     return is_near(difference, filter_bound) ? judgement(Cause::within_precision, "filters may round their weights")
                                              : judgement(Cause::mismatch, "more than filters may differ");

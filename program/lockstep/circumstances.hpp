@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <utility>
@@ -19,6 +20,7 @@ struct Circumstances {
   std::set<SiteKey> order_dependent = {};             ///< give other results when the invocations run in another order
   std::map<SiteKey, WrongDevice> wrong_atomics = {};  ///< AtomicFindings::wrong
   bool same_subgroups = true;                         ///< both devices form subgroups of one size
+  std::uint32_t subgroup_size = 0;                    ///< of device a; 0: unknown
   /// Device a forced along its own recording, so that each instruction stands alone as those of device b do: where a
   /// driver combines arithmetic with other instructions, it gives another result than the recorded one. Null: unknown.
   const Recording* alone_a = nullptr;

@@ -15,35 +15,44 @@ namespace {
 constexpr std::uint32_t ray_count = 65;  ///< the ray, and 64 neighbours
 constexpr float reach = 0x1p-21f;        ///< of the neighbours, relative to the scene: 4 units in the last place
 
-/// Triangles that are not opaque are met too: which of them a shader lets through, the arbiter does not know.
+/// Of one ray: what it commits to, and the candidates that the shader is shown before, if it lets none through.
+constexpr std::uint32_t answers_per_ray = 16;
+
+/// Which of the triangles that are not opaque a shader lets through, the arbiter does not know. flags_mask.z: whether
+/// all of them, as for a shader that is shown none.
 constexpr const char* tracing = R"(#version 460
 #extension GL_EXT_ray_query : require
 layout(local_size_x = 1) in;
 layout(set = 0, binding = 0) uniform accelerationStructureEXT scene;
 struct Ray { vec4 origin_minimum; vec4 direction_maximum; uvec4 flags_mask; };
 layout(set = 0, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
-layout(set = 0, binding = 2, std430) writeonly buffer Answers { uvec4 answers[]; };
+struct Answer {
+  uint type; float t; vec2 barycentrics; uint instance, custom_index, geometry, primitive, front_face, unused[3];
+};
+layout(set = 0, binding = 2, std430) writeonly buffer Answers { Answer answers[]; };
+#define ANSWER(query, committed) Answer(1u, rayQueryGetIntersectionTEXT(query, committed), \
+    rayQueryGetIntersectionBarycentricsEXT(query, committed), rayQueryGetIntersectionInstanceIdEXT(query, committed), \
+    rayQueryGetIntersectionInstanceCustomIndexEXT(query, committed), \
+    rayQueryGetIntersectionGeometryIndexEXT(query, committed), \
+    rayQueryGetIntersectionPrimitiveIndexEXT(query, committed), \
+    rayQueryGetIntersectionFrontFaceEXT(query, committed) ? 1u : 0u, uint[](0u, 0u, 0u))
 void main() {
   uint i = gl_GlobalInvocationID.x;
   Ray ray = rays[i];
+  bool lets_through = ray.flags_mask.z != 0u;
+  const uint per_ray = 16u;
+  for (uint k = 0u; k < per_ray; ++k) answers[per_ray * i + k].type = 0u;
   rayQueryEXT query;
   rayQueryInitializeEXT(query, scene, ray.flags_mask.x, ray.flags_mask.y, ray.origin_minimum.xyz, ray.origin_minimum.w,
                         ray.direction_maximum.xyz, ray.direction_maximum.w);
+  uint count = 1u;
   while (rayQueryProceedEXT(query))
-    if (rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT)
-      rayQueryConfirmIntersectionEXT(query);
-  uint type = rayQueryGetIntersectionTypeEXT(query, true);
-  answers[3 * i] = uvec4(type, 0, 0, 0);
-  answers[3 * i + 1] = uvec4(0);
-  answers[3 * i + 2] = uvec4(0);
-  if (type != gl_RayQueryCommittedIntersectionTriangleEXT) return;
-  answers[3 * i].y = floatBitsToUint(rayQueryGetIntersectionTEXT(query, true));
-  answers[3 * i].zw = floatBitsToUint(rayQueryGetIntersectionBarycentricsEXT(query, true));
-  answers[3 * i + 1] = uvec4(rayQueryGetIntersectionInstanceIdEXT(query, true),
-                             rayQueryGetIntersectionInstanceCustomIndexEXT(query, true),
-                             rayQueryGetIntersectionGeometryIndexEXT(query, true),
-                             rayQueryGetIntersectionPrimitiveIndexEXT(query, true));
-  answers[3 * i + 2].x = rayQueryGetIntersectionFrontFaceEXT(query, true) ? 1u : 0u;
+    if (rayQueryGetIntersectionTypeEXT(query, false) == gl_RayQueryCandidateIntersectionTriangleEXT) {
+      if (lets_through) rayQueryConfirmIntersectionEXT(query);
+      else if (count < per_ray) answers[per_ray * i + count++] = ANSWER(query, false);
+    }
+  if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionTriangleEXT)
+    answers[per_ray * i] = ANSWER(query, true);
 }
 )";
 
@@ -107,6 +116,13 @@ bool has_candidates(const Job& job) {
   });
 }
 
+bool has_boxes(const Job& job) {
+  return std::ranges::any_of(job.bottom_levels, [](const BottomLevel& level) {
+    return std::ranges::any_of(level.geometries,
+                               [](const auto& geometry) { return !std::holds_alternative<Triangles>(geometry); });
+  });
+}
+
 /// In [-1, 1], the same for the same numbers.
 float spread(std::uint32_t ray, std::uint32_t axis) {
   std::uint32_t x = ray * 0x9e3779b9u + axis * 0x85ebca6bu;
@@ -157,7 +173,7 @@ struct RayArbiter::Tracer {
 };
 
 RayArbiter::RayArbiter(rhi::Device& exact, const Job& job)
-    : exact_(exact), job_(job), extent_(extent()), has_candidates_(has_candidates(job)) {}
+    : exact_(exact), job_(job), extent_(extent()), has_candidates_(has_candidates(job)), has_boxes_(has_boxes(job)) {}
 
 RayArbiter::~RayArbiter() = default;
 
@@ -217,6 +233,12 @@ std::optional<RayArbiter::Ray> RayArbiter::ray_of(const RecordedShader& shader, 
              .flags_mask = {(*words(first + 1))[0], (*words(first + 2))[0], 0, 0}};
 }
 
+bool RayArbiter::shows_candidates(const Ray& ray) const {
+  const std::uint32_t flags = ray.flags_mask[0];
+  if ((flags & spv::RayFlagsOpaqueKHRMask) != 0) return false;
+  return has_candidates_ || (flags & spv::RayFlagsNoOpaqueKHRMask) != 0;
+}
+
 std::vector<RayArbiter::Answer> RayArbiter::answers(const Ray& ray) const {
   std::unique_ptr<Tracer>& tracer = tracers_[ray.top_level];
   if (tracer == nullptr) {
@@ -224,7 +246,8 @@ std::vector<RayArbiter::Answer> RayArbiter::answers(const Ray& ray) const {
     tracer->job = {
         .shaders = {{.name = "arbiter", .spirv = glsl::compile(tracing, rhi::ShaderStage::compute, "arbiter")}},
         .buffers = {{.name = "rays", .initial = std::vector<std::byte>(ray_count * 48)},
-                    {.name = "answers", .initial = std::vector<std::byte>(ray_count * 48)}},
+                    {.name = "answers",
+                     .initial = std::vector<std::byte>(ray_count * answers_per_ray * sizeof(Answer))}},
         .bottom_levels = job_.bottom_levels,
         .top_levels = {job_.top_levels[ray.top_level]},
         .pipelines = {{.name = "arbiter",
@@ -243,6 +266,7 @@ std::vector<RayArbiter::Answer> RayArbiter::answers(const Ray& ray) const {
   std::vector<std::byte> bytes;
   for (std::uint32_t i = 0; i < ray_count; ++i) {
     Ray neighbour = ray;
+    neighbour.flags_mask[2] = shows_candidates(ray) ? 0 : 1;
     for (std::uint32_t axis = 0; axis < 3 && i != 0; ++axis) {
       neighbour.origin_minimum[axis] += spread(i, axis) * reach * origin_scale;
       neighbour.direction_maximum[axis] += spread(i, axis + 3) * reach * direction_scale;
@@ -255,9 +279,13 @@ std::vector<RayArbiter::Answer> RayArbiter::answers(const Ray& ray) const {
   tracer->execution->set_buffer(0, bytes);
   tracer->execution->run();
   const std::vector<std::byte> result = tracer->execution->buffer(1);
-  std::vector<Answer> answers(ray_count);
+  std::vector<Answer> answers(ray_count * answers_per_ray);
   std::memcpy(answers.data(), result.data(), result.size());
-  return answers;
+  // Of a ray that meets nothing, that is an answer; behind the last candidate there is none.
+  std::vector<Answer> given;
+  for (std::size_t i = 0; i < answers.size(); ++i)
+    if (i % answers_per_ray == 0 || answers[i].words[0] != 0) given.push_back(answers[i]);
+  return given;
 }
 
 std::optional<Judgement> RayArbiter::judge(const Walk& walk, const Divergence& difference) const {
@@ -283,6 +311,13 @@ std::optional<Judgement> RayArbiter::judge(const Walk& walk, const Divergence& d
   const std::optional<Ray> ray = ray_of(*asker, *operands);
   if (!ray) return std::nullopt;
 
+  const bool has_candidates = shows_candidates(*ray);
+  const Judgement any_candidate{.cause = Cause::order,
+                                .wrong = WrongDevice::none,
+                                .reason = "which candidates the shader lets through depends on their order"};
+  // Whether a ray meets anything is then the shader's decision, as is where it meets a box.
+  if (has_candidates && (*question == Question::type || has_boxes_)) return any_candidate;
+
   // A load of one component compares just that.
   std::size_t component = 0;
   const bool is_float = *question == Question::t || *question == Question::barycentrics;
@@ -290,11 +325,22 @@ std::optional<Judgement> RayArbiter::judge(const Walk& walk, const Divergence& d
     if (const Instruction& pointer = definition(module, instruction.words[3]); pointer.op == spv::OpAccessChain)
       if (const std::optional<RecordedWords> index = walk.value_of(pointer.words[4])) component = index->words[0] & 1;
   const std::vector<Answer> all = answers(*ray);
+  const auto is_near_one = [&](float seen, std::size_t i) {
+    return std::ranges::any_of(all, [&](const Answer& each) {
+      const float answer = std::bit_cast<float>(each.of(*question)[component + i]);
+      return each.words[0] != 0 && std::fabs(seen - answer) <= 256 * reach * std::max(1.0f, std::fabs(answer));
+    });
+  };
   const auto holds = [&](const RecordedWords& value) {
     for (std::size_t i = 0; i < value.words.size(); ++i) {
+      const float seen = std::bit_cast<float>(value.words[i]);
       if (!is_float) {
         if (std::ranges::none_of(all, [&](const Answer& each) { return each.of(*question)[i] == value.words[i]; }))
           return false;
+        continue;
+      }
+      if (has_candidates) {
+        if (!is_near_one(seen, i)) return false;
         continue;
       }
       float least = INFINITY, most = -INFINITY;
@@ -304,13 +350,13 @@ std::optional<Judgement> RayArbiter::judge(const Walk& walk, const Divergence& d
         least = std::min(least, answer);
         most = std::max(most, answer);
       }
-      const float seen = std::bit_cast<float>(value.words[i]);
       const float slack = (most - least) + 16 * reach * std::max({1.0f, std::fabs(least), std::fabs(most)});
       if (!(seen >= least - slack && seen <= most + slack)) return false;
     }
     return true;
   };
   const bool a = holds(difference.a), b = holds(difference.b);
+  if (a && b && has_candidates) return any_candidate;
   if (a && b)
     return Judgement{.cause = is_float ? Cause::within_precision : Cause::tie,
                      .wrong = WrongDevice::none,

@@ -34,14 +34,17 @@ class RayArbiter {
   struct Tracer;
 
   std::optional<Ray> ray_of(const RecordedShader& shader, const OperandValues& operands) const;
+  /// Of the ray and its neighbours. Where a shader is shown candidates, all of them are answers.
   std::vector<Answer> answers(const Ray& ray) const;
+  bool shows_candidates(const Ray& ray) const;
   std::optional<std::size_t> top_level_of(const Module& module, std::uint32_t structure) const;
   float extent() const;
 
   rhi::Device& exact_;
   const Job& job_;
-  float extent_ = 1;  ///< the largest coordinate of the scene
-  bool has_candidates_ = false;
+  float extent_ = 1;             ///< the largest coordinate of the scene
+  bool has_candidates_ = false;  ///< unless a ray's flags say otherwise
+  bool has_boxes_ = false;       ///< that an intersection shader, or a query, decides about
   mutable std::map<std::size_t, std::unique_ptr<Tracer>> tracers_;  ///< by top level, each made once it is needed
 };
 

@@ -50,7 +50,10 @@ TEST_CASE("every command explains itself and all its options") {
        "--threads --validation Exit Examples"},
       {"amber", "FILE --device --junit --time-limit --validation Exit Examples"},
       {"gallery", "LIST --out --device --only --size --spp --threads Exit Examples"},
-      {"bench", "SCENE --kernels --device --repeat --json Exit Examples" + image},
+      {"bench",
+       "SCENE --kernels --device --repeat --vary --first-picture --quick --json --csv --html --baseline Exit "
+       "Examples" +
+           image},
       {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},
       {"study", "sampling Exit"},
       {"matrix", "SCENE --device --json Exit Example" + image + thresholds},

@@ -1,14 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "compare/session/rendering.hpp"
-#include "pathtracer/render/renderer.hpp"
+#include "base/error.hpp"
+#include "base/text_file.hpp"
+#include "tools/bench/measurement.hpp"
+#include "tools/bench/page.hpp"
+#include "tools/bench/slower.hpp"
 #include "tools/command.hpp"
 #include "tools/kernels/kernel.hpp"
 #include "tools/kernels/kernel_run.hpp"
@@ -19,6 +25,7 @@
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
+#include "tools/output/run_record.hpp"
 #include "tools/report/bench_report.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/kernel_report.hpp"
@@ -28,63 +35,97 @@ namespace {
 
 struct Options {
   RenderOptions render;
+  std::vector<std::filesystem::path> scenes;
+  std::vector<std::string> words;  ///< the options of rendering that are given
+  std::vector<std::string> variations;
   std::vector<std::string> devices;
   std::uint32_t rounds = 5;
-  std::filesystem::path json;          ///< empty: none
-  std::optional<std::string> kernels;  ///< in place of a scene: a list of names; "": all
+  bool first_picture = false;
+  bool quick = false;
+  std::filesystem::path json, csv, page, baseline;  ///< empty: none
+  std::optional<std::string> kernels;               ///< in place of a scene: a list of names; "": all
 };
 
-template <typename Report>
-int finish(const Options& options, const Report& report) {
-  print("{}", table(report));
-  if (!options.json.empty()) {
-    const OutputFile file{options.json,
-                          [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }};
-    write_or_rescue({&file, 1});
-    print_written({&file, 1});
+/// A first picture that takes longer is none that a person waits for.
+constexpr std::chrono::minutes patience{30};
+/// With --quick: of each device.
+constexpr std::chrono::seconds quick_patience{15};
+
+void write_files(const std::vector<OutputFile>& files) {
+  write_or_rescue(files);
+  print_written(files);
+}
+
+OutputFile text_file(const std::filesystem::path& path, const std::function<std::string()>& text) {
+  return {path, [text](const std::filesystem::path& temporary) { write_text(temporary, text()); }};
+}
+
+/// The stored run. Throws Error.
+nlohmann::ordered_json read_baseline(const std::filesystem::path& path) {
+  try {
+    return nlohmann::ordered_json::parse(read_text(path));
+  } catch (const nlohmann::json::exception&) {
+    throw Error(fmt::format("{}: it is no JSON", path.string()));
   }
-  return exit_code::success;
+}
+
+/// Says what has changed since the stored run.
+int compare_with_baseline(const Options& options, const nlohmann::ordered_json& stored,
+                          const nlohmann::ordered_json& now) {
+  SpeedChanges changes;
+  try {
+    changes = speed_changes(stored, now);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", options.baseline.string(), error.what()));
+  }
+  print("\nBeside {}: {} slower, {} faster, {} unchanged, {} that it does not have\n", options.baseline.string(),
+        changes.slower.size(), changes.faster.size(), changes.unchanged, changes.unmatched.size());
+  for (const std::string& sentence : changes.slower) print("  slower  {}\n", sentence);
+  for (const std::string& sentence : changes.faster) print("  faster  {}\n", sentence);
+  for (const std::string& sentence : changes.unmatched) print("  new     {}\n", sentence);
+  return changes.slower.empty() ? exit_code::success : exit_code::failed;
+}
+
+RenderOptions quick_options(RenderOptions options) {
+  if (!options.size) options.size = glm::uvec2(128, 128);
+  if (!options.settings.samples) options.settings.samples = 4;
+  return options;
 }
 
 int measure_speed(const Options& options) {
-  if (!options.json.empty()) check_output_path(options.json);
-  const compare::Job job = load_job(options.render);
-  BenchReport report{.job = summary(job), .threads = options.render.threads, .series = {}};
-  std::vector<std::unique_ptr<pathtracer::Renderer>> renderers;
-  for (const std::string& name : options.devices) {
-    const rhi::DeviceHandle device = open_device(name, options.render);
-    const ShownStage stage(building_stage);
-    renderers.push_back(std::make_unique<pathtracer::Renderer>(device, job.scene, job.settings, options.render.trace));
-    report.series.push_back({.device = device->info(),
-                             .trace = renderers.back()->scene().trace(),
-                             .build_milliseconds = renderers.back()->scene().build_milliseconds(),
-                             .milliseconds = {}});
-  }
-  print_warnings(renderers.front()->scene().warnings());
+  BenchReport report;
+  nlohmann::ordered_json json;
+  const std::string command = command_line();
+  std::vector<OutputFile> files;
+  const auto numbers = [&json] { return json_text(json); };
+  if (!options.json.empty()) files.push_back(text_file(options.json, numbers));
+  if (!options.csv.empty()) files.push_back(text_file(options.csv, [&report] { return csv(report); }));
+  if (!options.page.empty())
+    files.push_back(text_file(options.page, [&] { return bench_page(report, command, numbers()); }));
+  check_output_files(files);
+  std::optional<nlohmann::ordered_json> stored;
+  if (!options.baseline.empty()) stored = read_baseline(options.baseline);
 
-  // Round 0 warms up: first compilation, page faults, clock speeds. The devices take turns within a round, so that a
-  // machine that becomes slower or faster does so for all of them.
-  for (std::uint32_t round = 0; round <= options.rounds; ++round) {
-    for (std::size_t index = 0; index < renderers.size(); ++index) {
-      pathtracer::Renderer& renderer = *renderers[index];
-      BenchSeries& series = report.series[index];
-      renderer.restart(job.settings);
-      compare::compile(renderer, progress_bars());
-      if (round == 0) series.compile_milliseconds = renderer.compile_milliseconds();
-      const std::string label = fmt::format("round {} of {}, {}", round, options.rounds, series.device.name);
-      if (!renderer.render(job.samples, progress_bar(label))) throw Cancelled();
-      series.rays = renderer.ray_count();
-      if (round > 0) series.milliseconds.push_back(renderer.device_milliseconds());
-    }
-  }
-  return finish(options, report);
+  std::vector<Variation> variations;
+  for (const std::string& text : options.variations) variations.push_back(parse_variation(text));
+  MeasureOptions measuring{.devices = options.devices, .rounds = options.rounds};
+  if (options.first_picture) measuring.first_picture_limit = patience;
+  if (options.quick) measuring.first_picture_limit = quick_patience;
+  const RenderOptions base = options.quick ? quick_options(options.render) : options.render;
+  report = measure(configurations(base, options.words, options.scenes, variations), measuring);
+  json = to_json(report);
+  print("{}", table(report));
+  if (!files.empty()) write_files(files);
+  return stored ? compare_with_baseline(options, *stored, json) : exit_code::success;
 }
 
 int measure_kernels(const Options& options) {
-  if (!options.json.empty()) check_output_path(options.json);
+  KernelReport report{.threads = options.render.threads, .devices = {}, .kernels = {}};
+  std::vector<OutputFile> files;
+  if (!options.json.empty()) files.push_back(text_file(options.json, [&report] { return json_text(to_json(report)); }));
+  check_output_files(files);
   const std::vector<kernels::Kernel> chosen = kernels::named_kernels(*options.kernels);
   std::vector<rhi::DeviceHandle> devices;
-  KernelReport report{.threads = options.render.threads, .devices = {}, .kernels = {}};
   for (const std::string& name : options.devices) {
     devices.push_back(open_device(name, options.render));
     report.devices.push_back(devices.back()->info());
@@ -117,8 +158,28 @@ int measure_kernels(const Options& options) {
       }
     }
   }
-  return finish(options, report);
+  print("{}", table(report));
+  if (!files.empty()) write_files(files);
+  return exit_code::success;
 }
+
+/// The options of rendering that the command line has, as words.
+void collect_words(const CLI::App& command, const std::set<std::string>& others, std::vector<std::string>& words) {
+  for (const CLI::Option* option : command.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || others.contains(name)) continue;
+    words.push_back(name);
+    if (option->get_items_expected_max() > 0)
+      words.insert(words.end(), option->results().begin(), option->results().end());
+  }
+  for (const CLI::App* group : command.get_subcommands([](const CLI::App*) { return true; }))
+    collect_words(*group, others, words);
+}
+
+/// The options that are not about rendering.
+const std::set<std::string> own_options = {"SCENE",  "--kernels",       "--device",   "--repeat",
+                                           "--vary", "--first-picture", "--quick",    "--json",
+                                           "--csv",  "--html",          "--baseline", "--help"};
 
 /// Throws for options that say how to render a scene, which kernels have none of.
 void refuse_scene_options(const CLI::App& command) {
@@ -140,7 +201,10 @@ void add_bench_command(CLI::App& app, Action& action) {
       "bench", "Measure how fast devices render a scene or run compute kernels, in alternating runs");
   const auto options = std::make_shared<Options>();
   add_render_options(*command, options->render);
-  CLI::Option* const scene = command->get_option("SCENE")->required(false);
+  command->remove_option(command->get_option("SCENE"));
+  command
+      ->add_option("SCENE", options->scenes, "Wavefront OBJ, glTF (.gltf, .glb) or scene description (.json); several")
+      ->type_name("FILE...");
   std::string names;
   for (const kernels::Kernel& kernel : kernels::kernels())
     names += fmt::format("{}{}", names.empty() ? "" : ", ", kernel.name);
@@ -155,17 +219,47 @@ void add_bench_command(CLI::App& app, Action& action) {
       ->type_name("NAME,NAME,...");
   add_devices(*command, options->devices, "Devices to measure; the first is the reference of the ratios")->required();
   add_whole_number(*command, "--repeat", options->rounds, 1, 10'000, "Measured rounds, after one warm-up round");
+  command
+      ->add_option(
+          "--vary", options->variations,
+          "Measure all values of an option of rendering: spp=1,4,16, size=128x128,512x512, trace=query,pipeline, "
+          "threads=1,2; repeat it for all combinations")
+      ->type_name("NAME=VALUE,...")
+      ->allow_extra_args(false);
+  command->add_flag("--first-picture", options->first_picture,
+                    "Time a program of its own from its start to the first picture, once for each device and setting");
+  command->add_flag("--quick", options->quick,
+                    "End within a minute: 128x128 pixels and 4 samples unless given, three rounds, and no device whose "
+                    "driver compiles shaders for long");
   command->add_option("--json", options->json, "Write all measurements, round by round, as JSON")->type_name("FILE");
+  command->add_option("--csv", options->csv, "Write a line for each round")->type_name("FILE");
+  command->add_option("--html", options->page, "Write a page with plots and tables, which opens from disk")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--baseline", options->baseline,
+          "Compare with what --json has written on this machine, and exit with 1 where something became slower")
+      ->type_name("FILE");
   command->footer(
       "Times are milliseconds on the device (by its timestamps where it has them), without loading and building.\n"
-      "Exit code: 0 measured, 1 a kernel answered wrongly, 2 error.\n"
+      "Intervals hold the median of the distribution with the probability beside them.\n"
+      "Exit code: 0 measured, 1 slower than the baseline or a kernel answered wrongly, 2 error.\n"
       "Examples:\n"
       "  tandem bench scenes/cornell_box.obj --device vulkan,cpu --repeat 9 --json bench.json\n"
+      "  tandem bench scenes/cornell_box.obj --device cpu --vary spp=1,4,16 --vary threads=1,2 --html bench.html\n"
+      "  tandem bench --quick scenes/cornell_box.obj --device cpu --device vulkan\n"
       "  tandem bench --kernels --device vulkan,cpu,cpu-scalar\n"
       "  tandem bench --kernels fft,n-body --device vulkan,cpu");
-  command->callback([&action, options, command, scene] {
+  command->callback([&action, options, command] {
     if (!options->kernels) {
-      if (scene->count() == 0) throw CLI::RequiredError("SCENE");
+      if (options->scenes.empty()) throw CLI::RequiredError("SCENE");
+      collect_words(*command, own_options, options->words);
+      if (options->quick) {
+        if (command->count("--repeat") == 0) options->rounds = 3;
+        if (command->get_option("--spp")->count() == 0) options->words.insert(options->words.end(), {"--spp", "4"});
+        if (command->get_option("--size")->count() == 0)
+          options->words.insert(options->words.end(), {"--size", "128x128"});
+      }
       action = [options] { return measure_speed(*options); };
       return;
     }
