@@ -14,7 +14,7 @@ using Color = std::array<std::uint8_t, 3>;
 
 constexpr Color equal = {0, 0, 0}, outside = {96, 96, 96}, not_a_number = {255, 0, 255};
 constexpr std::array<Color, 7> decades = {
-    {{0, 0, 110}, {30, 80, 255}, {0, 210, 230}, {0, 190, 60}, {250, 220, 0}, {230, 30, 20}, {255, 255, 255}}};
+    {{30, 30, 150}, {30, 80, 255}, {0, 210, 230}, {0, 190, 60}, {250, 220, 0}, {230, 30, 20}, {255, 255, 255}}};
 
 /// 0: equal bits; infinite where one is no number and the other is.
 double relative_difference(const Place& place, std::span<const std::byte> a, std::span<const std::byte> b) {

@@ -87,7 +87,7 @@ class Page {
 
   void add_resources() {
     add("<section class=\"card\"><h2>Buffers and images</h2><div class=\"scroll\"><table id=\"resources\">\n"
-        "<thead><tr><th>name</th><th>values</th><th>bit-equal</th><th>within {} ulp or {:g}</th><th>largest "
+        "<thead><tr><th>name</th><th>values</th><th>bit-equal</th><th>within {} ulp or {:g} relative</th><th>largest "
         "ulp</th><th>relative</th><th>absolute</th><th>NaN in a, b alone</th></tr></thead>\n<tbody>\n",
         contents_.tolerance.ulp, contents_.tolerance.relative);
     for (const auto& [position, values] : contents_.comparisons)
