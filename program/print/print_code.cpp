@@ -58,7 +58,7 @@ class Rewriter {
 
   bool is_call(const Instruction& instruction) const {
     return instruction.op == spv::OpExtInst && sets_.contains(instruction.words[3]) &&
-           instruction.words[4] == debug_printf;
+           instruction.words[4] == debug_printf && instruction.words.size() > format_word;
   }
 
   bool is_kept(const Instruction& instruction) const {
