@@ -142,6 +142,9 @@ struct DeviceDesc {
   /// one after the other. A kernel with subgroup operations has its subgroup's size in place of any number but 1. 0:
   /// the device chooses. Results are the same.
   std::uint32_t lanes = 0;
+  /// CPU: large kernels compiled at run time (of more than 2^14 words of SPIR-V) are not optimised. The compiler takes
+  /// a fiftieth of the time, and they run up to 18 times as long. Results are the same.
+  bool quick_kernels = false;
   std::uint32_t thread_count = 0;           ///< CPU: worker threads, 0 for all that the machine has
   std::filesystem::path kernel_cache = {};  ///< CPU: folder of kernels compiled at run time; empty: $TANDEM_CACHE_DIR,
                                             ///< else $XDG_CACHE_HOME/tandem, else ~/.cache/tandem

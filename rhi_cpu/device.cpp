@@ -224,7 +224,8 @@ DeviceState::DeviceState(const rhi::DeviceDesc& desc, std::vector<PrecompiledKer
                .subgroup_size = info.limits.subgroup_size,
                .lanes = desc.name == scalar_name ? 1
                         : desc.name == wide_name ? native_lanes()
-                                                 : desc.lanes},
+                                                 : desc.lanes,
+               .quick = desc.quick_kernels},
               desc.kernel_cache, desc.on_message) {}
 
 std::span<const std::string_view> device_names() {

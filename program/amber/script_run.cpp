@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -12,6 +13,7 @@ namespace tandem::program::amber {
 namespace {
 
 constexpr std::size_t most_reasons = 10;
+constexpr std::uint32_t most_printed_lines = 1000;
 
 /// A result of a device's error: what it does not support is skipped, a broken rule is the script's fault.
 Result result_of(const rhi::Error& error) {
@@ -25,8 +27,8 @@ Result result_of(const rhi::Error& error) {
 std::vector<rhi::ShaderModuleHandle> modules_of(const Job& job, rhi::Device& device) {
   std::vector<rhi::ShaderModuleHandle> modules;
   for (const Shader& shader : job.shaders)
-    modules.push_back(
-        device.create_shader_module({.spirv = shader.spirv, .label = shader.name, .entry_point = shader.entry_point}));
+    modules.push_back(device.create_shader_module(
+        {.spirv = without_prints(shader.spirv, shader.name), .label = shader.name, .entry_point = shader.entry_point}));
   return modules;
 }
 
@@ -86,7 +88,9 @@ class Contents {
 };
 
 Result take_steps(const Script& script, rhi::Device& device) {
-  Execution execution(device, script.job);
+  const std::optional<PrintingJob> printing = printing_job(script.job, most_printed_lines);
+  const std::vector<std::byte>* const empty = printing ? &printing->job.buffers[printing->buffer].initial : nullptr;
+  Execution execution(device, printing ? printing->job : script.job);
   Contents contents(execution, script.job);
   Result result;
   std::size_t failures = 0;
@@ -94,6 +98,12 @@ Result take_steps(const Script& script, rhi::Device& device) {
     if (step.kind == Step::Kind::command) {
       contents.forget();
       execution.run(script.job.commands[step.index]);
+      if (!printing) continue;
+      result.printed.push_back(printed_lines(*printing, execution.buffer(printing->buffer)));
+      if (result.printed.back().lines.empty())
+        result.printed.pop_back();
+      else
+        execution.set_buffer(printing->buffer, *empty);
       continue;
     }
     const Expectation& expectation = script.expectations[step.index];

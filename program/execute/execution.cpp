@@ -113,7 +113,9 @@ void Execution::run() {
   for (const Command& command : state_->job.commands) run(command);
 }
 
-double Execution::timed_run() {
+double Execution::timed_run() { return timed_run(state_->job.commands); }
+
+double Execution::timed_run(std::span<const Command> commands) {
   rhi::Device& device = state_->device;
   const rhi::CommandListHandle list = device.create_command_list("the job");
   rhi::QueryPoolHandle times;
@@ -121,7 +123,7 @@ double Execution::timed_run() {
     times = device.create_query_pool({.count = 2, .label = "times of the job"});
     list->write_timestamp(times, 0);
   }
-  for (const Command& command : state_->job.commands) state_->record(command, *list);
+  for (const Command& command : commands) state_->record(command, *list);
   if (times != nullptr) list->write_timestamp(times, 1);
   const auto start = std::chrono::steady_clock::now();
   device.submit(list)->wait();

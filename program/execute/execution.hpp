@@ -31,6 +31,8 @@ class Execution {
   void run();
   /// Runs them in one submission. Returns the milliseconds that the device needed, by its own clock where it has one.
   double timed_run();
+  /// The same of these commands.
+  double timed_run(std::span<const Command> commands);
 
   /// The bytes that a buffer has now. @param index in Job::buffers
   std::vector<std::byte> buffer(std::size_t index);

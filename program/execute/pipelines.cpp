@@ -8,6 +8,7 @@
 
 #include "program/execute/position.hpp"
 #include "program/execute/specialization.hpp"
+#include "program/print/print_code.hpp"
 
 namespace tandem::program {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 using rhi::BindingKind;
 
 rhi::ShaderModuleHandle make_module(rhi::Device& device, const Shader& shader) {
-  return device.create_shader_module({.spirv = shader.spirv, .label = shader.name, .entry_point = shader.entry_point});
+  const std::vector<std::uint32_t> words = without_prints(shader.spirv, shader.name);
+  return device.create_shader_module({.spirv = words, .label = shader.name, .entry_point = shader.entry_point});
 }
 
 /// The modules of ray tracing stages, which have their constants' values in them: a pipeline of the rhi gives a value

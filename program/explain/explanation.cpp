@@ -1,6 +1,7 @@
 #include "program/explain/explanation.hpp"
 
 #include <algorithm>
+#include <future>
 #include <numeric>
 #include <utility>
 
@@ -219,8 +220,13 @@ Explanation explain_command(rhi::Device& a, rhi::Device& b, const Job& job, cons
                             const Snapshot& inputs, const ExplainOptions& options) {
   Explanation result;
   Recorder on_a(a, job, command, inputs), on_b(b, job, command, inputs);
+  // Both devices compile at once; without an invocation it is not known yet whether b is to record.
+  std::future<void> form_of_b;
+  if (options.invocation && &a != &b)
+    form_of_b = std::async(std::launch::async, [&] { on_b.of(RecordForm::lockstep); });
   // Only the launch knows its size: that of a workgroup is the shader's.
   on_a.of(RecordForm::record);
+  if (form_of_b.valid()) form_of_b.get();
   Selection selection(on_a, on_b, options);
   selection.select(on_a.of(RecordForm::record).launch().size);
   result.launched = selection.launched;

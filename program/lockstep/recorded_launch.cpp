@@ -5,6 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "program/print/print_code.hpp"
 #include "rhi/entry_point.hpp"
 #include "rhi/error.hpp"
 
@@ -20,7 +21,8 @@ struct FixedShader {
 
 FixedShader fixed_shader(const Job& job, const Stage& stage) {
   const Shader& shader = job.shaders.at(stage.shader);
-  const std::vector<std::uint32_t> words = rhi::with_one_entry_point(shader.spirv, shader.entry_point, shader.name);
+  const std::vector<std::uint32_t> words =
+      without_prints(rhi::with_one_entry_point(shader.spirv, shader.entry_point, shader.name), shader.name);
   const rhi::ShaderReflection reflection = rhi::reflect(words, shader.name);
   std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> values;
   for (const rhi::SpecializationValue& value : stage.specialization) {

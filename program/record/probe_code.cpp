@@ -3,6 +3,7 @@
 #include <array>
 
 #include "program/record/buffer_layout.hpp"
+#include "program/record/word_code.hpp"
 
 namespace tandem::program {
 
@@ -109,13 +110,13 @@ void ProbeCode::record(const Module& module, const Instruction& instruction, con
   for (const Component& component : value_recorded.components) {
     std::uint32_t scalar = instruction.result;
     if (!component.path.empty()) {
-      Words operands = {scalar_type(component), globals_.new_id(), instruction.result};
+      Words operands = {scalar_type(globals_, component), globals_.new_id(), instruction.result};
       operands.insert(operands.end(), component.path.begin(), component.path.end());
       code_.append(encode(spv::OpCompositeExtract, operands));
       scalar = operands[1];
     }
     std::array<std::uint32_t, 2> words = {};
-    words_of(component, scalar, words.data());
+    append_words(code_, component, scalar, words.data());
     for (std::uint32_t i = 0; i < component.word_count(); ++i) {
       if (form_ == RecordForm::hash) {
         mix(words[i]);
@@ -150,36 +151,8 @@ void ProbeCode::resume(std::uint32_t link) {
   store_word(header, value(spv::OpSelect, uint, {takes_, other, cursor}));
 }
 
-std::uint32_t ProbeCode::scalar_type(const Component& component) {
-  switch (component.kind) {
-    case ComponentKind::boolean:
-      return globals_.bool_type();
-    case ComponentKind::floating:
-      return globals_.scalar_type(spv::OpTypeFloat, component.width, false);
-    default:
-      return globals_.scalar_type(spv::OpTypeInt, component.width, component.kind == ComponentKind::signed_integer);
-  }
-}
-
-void ProbeCode::words_of(const Component& component, std::uint32_t scalar, std::uint32_t* words) {
-  const std::uint32_t uint = globals_.uint_type();
-  if (component.kind == ComponentKind::boolean) {
-    words[0] = value(spv::OpSelect, uint, {scalar, globals_.constant(1), globals_.constant(0)});
-  } else if (component.width == 64) {
-    const std::uint32_t halves = value(spv::OpBitcast, globals_.uint_vector(2), {scalar});
-    words[0] = value(spv::OpCompositeExtract, uint, {halves, 0});
-    words[1] = value(spv::OpCompositeExtract, uint, {halves, 1});
-  } else if (component.width < 32 && component.kind == ComponentKind::floating) {
-    words[0] = value(spv::OpBitcast, uint, {value(spv::OpFConvert, globals_.float_type(), {scalar})});
-  } else if (component.width < 32) {
-    words[0] = value(spv::OpUConvert, uint, {scalar});
-  } else {
-    words[0] = component.kind == ComponentKind::unsigned_integer ? scalar : value(spv::OpBitcast, uint, {scalar});
-  }
-}
-
 std::uint32_t ProbeCode::scalar_of(const Component& component, const std::uint32_t* words) {
-  const std::uint32_t type = scalar_type(component);
+  const std::uint32_t type = scalar_type(globals_, component);
   if (component.kind == ComponentKind::boolean) return value(spv::OpINotEqual, type, {words[0], globals_.constant(0)});
   if (component.width == 64)
     return value(spv::OpBitcast, type,

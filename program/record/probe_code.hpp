@@ -45,8 +45,6 @@ class ProbeCode {
   void store_word(std::uint32_t index, std::uint32_t word) { store(word_pointer(index), word); }
   std::uint32_t plus(std::uint32_t id, std::uint32_t constant);
   void mix(std::uint32_t word);
-  std::uint32_t scalar_type(const Component& component);
-  void words_of(const Component& component, std::uint32_t scalar, std::uint32_t* words);
   std::uint32_t scalar_of(const Component& component, const std::uint32_t* words);
   std::uint32_t composite(const Module& module, std::uint32_t type, const std::uint32_t*& scalars);
 

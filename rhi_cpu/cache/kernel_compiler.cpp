@@ -152,12 +152,13 @@ bool precompile_kernel_headers(const KernelCompiler& compiler, const fs::path& f
 }
 
 std::string compile_kernel(const KernelCompiler& compiler, const fs::path& folder, const fs::path& headers,
-                           bool debug_info) {
+                           const KernelBuild& build) {
   if (headers.empty()) write_kernel_headers(folder);
   const fs::path library = folder / "kernel.so";
   std::vector<std::string> command = {compiler.path.string()};
   for (std::string& option : options()) command.push_back(std::move(option));
-  if (debug_info) command.emplace_back("-g");
+  if (!build.optimize) command.emplace_back("-O0");  // the last one counts
+  if (build.debug_info) command.emplace_back("-g");
   // GLM is installed with the compiler's own headers or beside them; both are on its default path.
   for (const std::string& argument : {std::string("-I"), (headers.empty() ? folder : headers).string(),
                                       std::string("-o"), library.string(), (folder / "kernel.cpp").string()})

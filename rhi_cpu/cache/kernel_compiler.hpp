@@ -26,16 +26,20 @@ std::uint32_t native_lanes();
 /// The processor's name for people, "" when the system does not say.
 std::string processor_name();
 
-/// All options of a run-time compilation, the same for every shader. A part of the cache key.
+/// All options of a run-time compilation of optimised kernels. A part of the cache key.
 std::string kernel_compile_options();
+
+struct KernelBuild {
+  bool debug_info = false;  ///< for a source that points a debugger at the shader's own lines
+  bool optimize = true;
+};
 
 /// Compiles `folder`/kernel.cpp to `folder`/kernel.so. When the compiler fails, its messages are in
 /// `folder`/compiler.log.
 /// @param headers a folder of precompile_kernel_headers(); "": the kernel headers are written below `folder`
-/// @param debug_info for a source that points a debugger at the shader's own lines
 /// @return "" or the first error that the compiler reports
 std::string compile_kernel(const KernelCompiler& compiler, const std::filesystem::path& folder,
-                           const std::filesystem::path& headers = {}, bool debug_info = false);
+                           const std::filesystem::path& headers = {}, const KernelBuild& build = {});
 
 /// Whether the compiler takes a precompiled header that lies beside the header itself, as g++ does.
 bool precompiles_headers(const KernelCompiler& compiler);

@@ -53,6 +53,7 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
   hasher.add(std::uint64_t{kernel::abi_version}).add(std::uint64_t{translator_version});
   hasher.add(std::uint64_t{options.robust}).add(std::uint64_t{options.watched});
   hasher.add(std::uint64_t{options.subgroup_size}).add(std::uint64_t{options.lanes});
+  hasher.add(std::uint64_t{options.quick});
   for (const KernelHeader& header : kernel_headers()) hasher.add(header.path).add(header.text);
   hasher.add(compiler.path.string()).add(compiler.version);
   hasher.add(kernel_compile_options()).add(processor_identity());
@@ -60,6 +61,9 @@ ContentHash key_of(std::span<const std::uint32_t> spirv, std::span<const rhi::Sp
   for (const rhi::SpecializationValue& value : values) hasher.add(std::uint64_t{value.id}).add(value.value);
   return hasher.hash();
 }
+
+/// SPIR-V of more words takes the C++ compiler, which makes one function of it, minutes.
+constexpr std::size_t most_optimized_words = 1 << 14;
 
 /// TranslateOptions::lanes of a shader.
 std::uint32_t lanes_of(const rhi::ShaderModule& shader, bool has_subgroups, const KernelOptions& options) {
@@ -94,6 +98,7 @@ Kernel KernelStore::kernel(const rhi::ShaderModule& shader, std::span<const rhi:
   const bool is_usual = options.subgroup_size == kernel::default_subgroup_size && options.lanes <= 1;
   if (found != precompiled_.end() && !options.watched && is_usual) return {.info = found->entry(), .library = nullptr};
   options.lanes = lanes_of(shader, has_subgroups, options);
+  options.quick = options.quick && shader.spirv().size() > most_optimized_words;
 
   const ContentHash key = key_of(shader.spirv(), values, options, compiler(label));
   const std::shared_ptr<Entry> known = entry(key);
@@ -128,13 +133,15 @@ KernelLibraryHandle KernelStore::compile(const rhi::ShaderModule& shader,
   std::ofstream(folder.path() / "kernel.cpp", std::ios::binary) << translation.source;
   // The translator gives line numbers when the SPIR-V has them.
   const bool has_lines = translation.source.find("\n#line ") != std::string::npos;
-  const std::filesystem::path precompiled = headers(how.lanes, label);
-  std::string problem = compile_kernel(compiler(label), folder.path(), precompiled, has_lines);
+  const KernelBuild build = {.debug_info = has_lines, .optimize = !options.quick};
+  // Headers are precompiled with the options of most kernels.
+  const std::filesystem::path precompiled = options.quick ? std::filesystem::path() : headers(how.lanes, label);
+  std::string problem = compile_kernel(compiler(label), folder.path(), precompiled, build);
   if (!problem.empty() && !precompiled.empty()) {
     // They may be damaged.
     std::error_code ignored;
     std::filesystem::remove_all(precompiled, ignored);
-    problem = compile_kernel(compiler(label), folder.path(), {}, has_lines);
+    problem = compile_kernel(compiler(label), folder.path(), {}, build);
   }
   if (!problem.empty()) {
     const std::filesystem::path kept = store.keep_failure(std::move(folder), key);

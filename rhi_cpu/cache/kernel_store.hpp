@@ -26,6 +26,7 @@ struct KernelOptions {
   bool watched = false;
   std::uint32_t subgroup_size = kernel::default_subgroup_size;
   std::uint32_t lanes = 0;  ///< DeviceDesc::lanes; of one kernel: TranslateOptions::lanes
+  bool quick = false;       ///< DeviceDesc::quick_kernels; of one kernel: it is not optimised
 };
 
 /// Native code that runs a shader.

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "rhi_cpu/kernel/abi.hpp"
+#include "rhi_cpu/kernel/memory.hpp"
 
 /// Accesses that stay inside what is bound, for kernels of devices with robust access: what lies outside reads as zero
 /// and is not written (Vulkan's robustBufferAccess2 and robustImageAccess2), byte by byte.
@@ -51,6 +52,18 @@ inline void write_inside(const std::byte* data, std::size_t size, std::byte* add
   copy_inside(copy, size, offset, address, extent);
   write(static_cast<std::byte*>(copy));
   std::memcpy(address, copy, bytes_inside(size, offset, extent));
+}
+
+/// The same of values that lie in memory as C++ has them, which most are: a function for each type, where every lambda
+/// above is one more for the compiler.
+template <typename T>
+inline T load_inside(const std::byte* data, std::size_t size, const std::byte* address) {
+  return read_inside<sizeof(T)>(data, size, address, [](const std::byte* inside) { return load<T>(inside); });
+}
+
+template <typename T>
+inline void store_inside(const std::byte* data, std::size_t size, std::byte* address, const T& value) {
+  write_inside<sizeof(T)>(data, size, address, [&](std::byte* inside) { store<T>(inside, value); });
 }
 
 /// Stands for memory outside during one atomic operation.

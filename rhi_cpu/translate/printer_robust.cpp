@@ -10,6 +10,16 @@ namespace tandem::cpu {
 
 using spirv_cross::SPIRType;
 
+namespace {
+
+/// Whether a value's bytes in memory are those of C++: a scalar, or a vector without gaps.
+bool lies_as_it_is(const SPIRType& type, const Address& address) {
+  return type.array.empty() && !type.pointer && type.basetype != SPIRType::Struct && type.columns == 1 &&
+         (type.vecsize == 1 || address.component_stride == 0);
+}
+
+}  // namespace
+
 std::uint32_t Printer::memory_extent(std::uint32_t type_id, const Address& address) const {
   const Type& type = get<Type>(type_id);
   const std::uint32_t scalar = type.width / 8;
@@ -42,6 +52,9 @@ bool Printer::is_guarded(const Address& address) const { return options_.robust 
 
 std::string Printer::guarded_load(std::uint32_t type_id, const Address& address) {
   if (!is_guarded(address)) return load_text(type_id, address);
+  if (lies_as_it_is(get<Type>(type_id), address))
+    return fmt::format("k::load_inside<{}>({}, {}, {})", type_name(get<Type>(type_id)), address.data, address.size,
+                       printed(address));
   Address inside = address;
   inside.bytes = "inside";
   inside.offset = 0;
@@ -52,6 +65,9 @@ std::string Printer::guarded_load(std::uint32_t type_id, const Address& address)
 
 std::string Printer::guarded_store(std::uint32_t type_id, const Address& address, const std::string& value) {
   if (!is_guarded(address)) return store_text(type_id, address, value);
+  if (lies_as_it_is(get<Type>(type_id), address))
+    return fmt::format("k::store_inside<{}>({}, {}, {}, {})", type_name(get<Type>(type_id)), address.data, address.size,
+                       printed(address), value);
   Address inside = address;
   inside.bytes = "inside";
   inside.offset = 0;

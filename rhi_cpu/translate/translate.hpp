@@ -11,7 +11,7 @@
 namespace tandem::cpu {
 
 /// Raised whenever the same SPIR-V translates to other C++ than before.
-inline constexpr std::uint32_t translator_version = 14;
+inline constexpr std::uint32_t translator_version = 15;
 
 struct Translation {
   std::string source;

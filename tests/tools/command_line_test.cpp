@@ -46,7 +46,8 @@ TEST_CASE("every command explains itself and all its options") {
       {"generate", "--triangles --output Example"},
       {"run",
        "SHADER --job -D -I --buffer --image --sampler --scene --non-opaque --spec --push --record --hit --entry "
-       "--recursion --groups --size --device --compare --ulp --tolerance --save --print --lines --list --check --time "
+       "--recursion --groups --size --device --compare --ulp --tolerance --save --print --lines --print-lines --list "
+       "--check --time "
        "--threads --validation Exit Examples"},
       {"amber", "FILE --device --junit --time-limit --validation Exit Examples"},
       {"gallery", "LIST --out --device --only --size --spp --threads Exit Examples"},
@@ -80,6 +81,13 @@ TEST_CASE("every command explains itself and all its options") {
              "--arbiter --threads --validation Exit Examples")) {
     CAPTURE(word);
     CHECK(of_shaders.output.find(word) != std::string::npos);
+  }
+  const Outcome diff_of_shaders = run_tandem("diff x.comp --help");
+  for (const std::string& word :
+       words("SHADER --buffer --a --b --arbiter --ulp --tolerance --json --junit --out --report "
+             "--threads --validation Exit Examples")) {
+    CAPTURE(word);
+    CHECK(diff_of_shaders.output.find(word) != std::string::npos);
   }
   CHECK(run_tandem("--version").output == "tandem " TANDEM_VERSION "\n");
 }

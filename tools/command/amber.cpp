@@ -23,6 +23,7 @@
 #include "tools/output/messages.hpp"
 #include "tools/output/output_file.hpp"
 #include "tools/output/print.hpp"
+#include "tools/program/printed_text.hpp"
 
 namespace tandem::tools {
 namespace {
@@ -83,6 +84,8 @@ amber::Result run_script(const std::optional<amber::Script>& script, const std::
 }
 
 void print_result(const std::string& file, const std::string& device, const amber::Result& result) {
+  for (const program::PrintedLines& lines : result.printed)
+    print("{}", program_run::printed_text(lines, fmt::format("{:<8} {:<10} {} ", "printed", device, file)));
   const bool on_line = result.outcome == Outcome::skipped && !result.reasons.empty();
   print("{:<8} {:<10} {}{}\n", word_of(result.outcome), device, file,
         on_line ? ": " + printable(result.reasons.front()) : "");

@@ -39,8 +39,8 @@ struct Options {
 int explain_program(const Options& options) {
   if (!options.json.empty()) check_output_path(options.json);
   const RunOptions& run = options.run.run;
-  const rhi::DeviceHandle a = open_device(recording_device(options.a), run);
-  const rhi::DeviceHandle b = open_device(recording_device(options.b), run);
+  const rhi::DeviceHandle a = open_recording_device(options.a, run);
+  const rhi::DeviceHandle b = open_recording_device(options.b, run);
   const ExplainedJob explained = explained_job(options.run, a->info());
   program::ExplainOptions wanted{.invocation = options.invocation,
                                  .most_bytes = std::uint64_t{options.most_mebibytes} << 20,

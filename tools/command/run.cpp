@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
 #include "base/printable.hpp"
 #include "program/execute/execution.hpp"
+#include "program/print/printing_job.hpp"
 #include "tools/command.hpp"
 #include "tools/options/device_options.hpp"
 #include "tools/options/job.hpp"
@@ -18,6 +20,7 @@
 #include "tools/output/progress_bar.hpp"
 #include "tools/program/job_builder.hpp"
 #include "tools/program/needs.hpp"
+#include "tools/program/printed_text.hpp"
 #include "tools/program/results.hpp"
 #include "tools/program/run_arguments.hpp"
 
@@ -45,6 +48,8 @@ rhi::DeviceHandle open(const std::string& name, const RunOptions& options) {
 
 int list(const LoadedProgram& program, const RunOptions& options) {
   print("{}", needs_text(program));
+  for (const program::PrintCall& call : program::print_calls({.shaders = program.shaders}))
+    print("  prints at {}: {}\n", call.place, shortened(call.source));
   const std::vector<MissingOption> missing = missing_options(program, options);
   if (options.launches.size() == 1)
     print("\n{}:\n  {}\n", missing.empty() ? "The command" : "For example", proposed_command(options, missing));
@@ -54,6 +59,7 @@ int list(const LoadedProgram& program, const RunOptions& options) {
 int check(const LoadedProgram& program, const RunOptions& options) {
   program::Job job;
   job.shaders = program.shaders;
+  program::print_calls(job);  // throws where a format is wrong
   bool can_run = true;
   for (const std::string& name : options.devices) {
     const rhi::DeviceHandle device = open(name, options);
@@ -70,6 +76,19 @@ Contents contents_of(program::Execution& execution, const BuiltJob& built) {
   for (const Resource& resource : built.resources)
     contents.push_back(resource.is_image ? execution.image(resource.index) : execution.buffer(resource.index));
   return contents;
+}
+
+/// Runs the commands one by one. Returns the milliseconds that the device needed.
+/// @param text what the shaders print goes behind it
+double run_printing(program::Execution& execution, const program::PrintingJob& printing, const std::string& name,
+                    std::string& text) {
+  double milliseconds = 0;
+  for (const program::Command& command : printing.job.commands) {
+    execution.set_buffer(printing.buffer, printing.job.buffers[printing.buffer].initial);
+    milliseconds += execution.timed_run({&command, 1});
+    text += printed_text(program::printed_lines(printing, execution.buffer(printing.buffer)), name + ": ");
+  }
+  return milliseconds;
 }
 
 void measure(program::Execution& execution, const std::string& name, std::uint32_t runs) {
@@ -94,19 +113,27 @@ int run_program(const RunArguments& given) {
   std::vector<Contents> contents(options.devices.size());
   const std::vector<OutputFile> files = result_files(built, options.saves, contents.front());
   check_output_files(files);
+  std::optional<program::PrintingJob> printing;
+  if (options.print_lines > 0) printing = program::printing_job(built.job, options.print_lines);
 
   for (std::size_t i = 0; i < options.devices.size(); ++i) {
     if (interrupted()) throw Cancelled();
     const rhi::DeviceHandle device = open(options.devices[i], options);
     const std::string& name = options.devices[i];
     std::optional<ShownStage> stage("shaders for " + name);
-    program::Execution execution(*device, built.job);
+    program::Execution execution(*device, printing ? printing->job : built.job);
     stage.emplace(name);
-    const double milliseconds = execution.timed_run();
+    std::string lines;
+    const double milliseconds = printing ? run_printing(execution, *printing, name, lines) : execution.timed_run();
     contents[i] = contents_of(execution, built);
     stage.reset();
-    print("{}: ran in {:.3f} ms\n", name, milliseconds);
-    if (options.time > 0) measure(execution, name, options.time);
+    print("{}{}: ran in {:.3f} ms\n", lines, name, milliseconds);
+    if (options.time > 0 && printing) {
+      program::Execution silent(*device, built.job);  // runs the shaders without their prints
+      measure(silent, name, options.time);
+    } else if (options.time > 0) {
+      measure(execution, name, options.time);
+    }
   }
   if (options.print) print("{}", printed(built, contents.front(), options.lines));
   write_or_rescue(files);
@@ -143,6 +170,8 @@ void add_run_command(CLI::App& app, Action& action) {
   add_whole_number(*command, "--lines", run.lines, 1, 1u << 20, "Lines of each resource that --print prints");
   command->add_flag("--list", run.list, "List bindings, push constants and specialisation constants; run nothing");
   command->add_flag("--check", run.check, "Say why each device cannot run the shaders, if so; compile and run nothing");
+  add_whole_number(*command, "--print-lines", run.print_lines, 0, 1u << 20,
+                   "Lines of debugPrintfEXT to show of each launch at most; 0: the shaders run without printing");
   add_whole_number(*command, "--time", run.time, 0, 1u << 20, "Runs to measure after the first");
   add_whole_number(*command, "--threads", run.threads, 0, 1024,
                    "Worker threads of the CPU devices; 0: one per hardware thread");

@@ -63,16 +63,28 @@ ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo&
   return {program.shaders.front().name, build_job(program, options)};
 }
 
-rhi::DeviceHandle open_device(const std::string& name, const RunOptions& options) {
+namespace {
+
+rhi::DeviceDesc device_desc(const std::string& name, const RunOptions& options) {
   rhi::DeviceDesc desc;
   desc.name = name;
   desc.driver_validation = options.validation;
   desc.on_message = print_message;
   desc.thread_count = options.threads;
-  return create_device(desc);
+  return desc;
 }
 
-std::string recording_device(const std::string& name) { return name == "cpu" ? "cpu-scalar" : name; }
+}  // namespace
+
+rhi::DeviceHandle open_device(const std::string& name, const RunOptions& options) {
+  return create_device(device_desc(name, options));
+}
+
+rhi::DeviceHandle open_recording_device(const std::string& name, const RunOptions& options) {
+  rhi::DeviceDesc desc = device_desc(name == "cpu" ? "cpu-scalar" : name, options);
+  desc.quick_kernels = true;
+  return create_device(desc);
+}
 
 std::array<std::uint32_t, 3> invocation_of(const char* option, const std::string& text) {
   std::array<std::uint32_t, 3> id = {};

@@ -27,9 +27,10 @@ ExplainedJob explained_job(const RunArguments& arguments, const rhi::DeviceInfo&
 /// A device with the options of the run.
 rhi::DeviceHandle open_device(const std::string& name, const RunOptions& options);
 
-/// The device on which "cpu" records: with one lane, for which the C++ compiler takes a tenth of the time. Results are
-/// the same. Every other device is itself.
-std::string recording_device(const std::string& name);
+/// Such a device for recording, whose kernels are large and run few times: the C++ compiler takes little time over them
+/// (DeviceDesc::quick_kernels), and "cpu" has one lane, which takes a tenth of the time of several. Results are the
+/// same.
+rhi::DeviceHandle open_recording_device(const std::string& name, const RunOptions& options);
 
 /// "5", "5,2" or "5,2,0". Throws CLI::ValidationError, naming the option.
 std::array<std::uint32_t, 3> invocation_of(const char* option, const std::string& text);

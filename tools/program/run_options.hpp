@@ -49,7 +49,8 @@ struct RunOptions {
   bool compare = false;
   program::Tolerance tolerance;
   bool print = false;
-  std::uint32_t lines = 16;  ///< of each resource that is printed
+  std::uint32_t lines = 16;          ///< of each resource that is printed
+  std::uint32_t print_lines = 1000;  ///< of debugPrintfEXT, of each launch; 0: shaders do not print
   bool list = false;
   bool check = false;
   std::uint32_t time = 0;  ///< runs that are measured

@@ -149,6 +149,37 @@ TEST_CASE("A damaged kernel in the cache is compiled anew") {
   CHECK(messages.count(Severity::info, "glow: compiled") == 2);
 }
 
+TEST_CASE("Large kernels may be left without optimisation, and compute the same") {
+  const EnvironmentVariable compiler("TANDEM_CXX", "");
+  std::string large = R"(#version 460
+layout(set = 0, binding = 0) buffer Values { uint values[]; };
+void main() {
+  uint i = gl_GlobalInvocationID.x + 5 * gl_GlobalInvocationID.y;
+  float x = float(i) * 0.37;
+)";
+  // Some 50 words of SPIR-V for each.
+  for (int line = 0; line < 400; ++line) large += "  x = fract(sin(x) * 43.5453) * sqrt(x + 1.0) + 0.125;\n";
+  large += "  values[i] = floatBitsToUint(x);\n}\n";
+  const ScratchFolder cache;
+  const auto values = [&](const char* text, bool quick) {
+    Messages messages;
+    const rhi::DeviceHandle device = create_device(
+        {.name = "cpu-scalar", .on_message = messages.callback(), .quick_kernels = quick, .kernel_cache = cache.path()},
+        {});
+    return run_glow(*device, test::compute_pipeline(*device, text, "large"));
+  };
+  const std::vector<std::uint32_t> quick = values(large.c_str(), true);
+  CHECK(quick == values(large.c_str(), false));
+  const auto kernels = [&] {
+    return std::ranges::count_if(fs::directory_iterator(cache.path()),
+                                 [](const auto& file) { return file.path().extension() == ".so"; });
+  };
+  CHECK(kernels() == 2);
+  // A small kernel is the same one on both devices.
+  CHECK(values(glow, true) == values(glow, false));
+  CHECK(kernels() == 3);
+}
+
 TEST_CASE("Another compiler, another kernel") {
   const ScratchFolder cache;
   const ScratchFolder tools;
