@@ -1,6 +1,7 @@
 #include "pathtracer/render/metropolis_picture.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <limits>
 
@@ -18,17 +19,14 @@ constexpr std::uint32_t stage_start = 1;
 constexpr std::uint32_t stage_mutate = 2;
 constexpr std::uint32_t chain_header = 9;
 constexpr std::uint32_t slot_words = 10;
-constexpr double splat_units = 1 << 24;
+constexpr double splat_units = 1 << 28;
 constexpr std::uint32_t workgroup_size = 64;
 
 /// Beyond these segments, few paths still matter to a chain.
 constexpr std::uint32_t most_stored_segments = 32;
 
-/// So that no sum of splats overflows: each is below 2^8 times 2^24 units, and a sum has 64 bits.
+/// So that no sum of splats overflows: each is below 2^32 units, and a sum has 64 bits.
 constexpr std::uint64_t most_mutations = std::uint64_t{1} << 32;
-
-/// Weights of splats are below (1 + brightness / scale) / the least weight of luminance, 14: with this, below 2^8.
-constexpr double largest_brightness = 16;  // in units of the scale
 
 /// MetropolisConstants of shaders/metropolis/chain.glsl.
 struct MetropolisConstants {
@@ -36,10 +34,15 @@ struct MetropolisConstants {
   std::uint32_t stored_segments = 0;
   float large_step = 0;
   float inverse_scale = 0;
-  float normalisation = 0;
-  std::uint32_t reserved[3] = {};
 };
-static_assert(sizeof(MetropolisConstants) == 32);
+
+/// LargeSteps of the same file.
+struct LargeSteps {
+  float sum;
+  float lost;
+  std::uint32_t count;
+  std::uint32_t reserved;
+};
 
 /// The camera and two dimensions for each segment, the time, and media: slot_of of the shader.
 std::uint32_t chain_words(std::uint32_t segments) { return chain_header + slot_words * (2 + 3 * segments); }
@@ -62,28 +65,44 @@ double sum(std::span<const float> values) {
   return result;
 }
 
+/// Indices into `weights`, each in proportion to its weight: systematic resampling, one random number and then equal
+/// steps through the sum. @param offset in [0, 1)
+std::vector<std::uint32_t> resampled(std::span<const float> weights, std::uint32_t count, double offset) {
+  const double total = sum(weights);
+  std::vector<std::uint32_t> result;
+  std::size_t index = 0;
+  double reached = double{weights[0]};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double wanted = (i + offset) / count * total;
+    while (reached <= wanted && index + 1 < weights.size()) reached += double{weights[++index]};
+    // Rounding may leave the last steps beyond the sum.
+    while (weights[index] == 0) --index;
+    result.push_back(static_cast<std::uint32_t>(index));
+  }
+  return result;
+}
+
 }  // namespace
 
 MetropolisStart metropolis_start(std::span<const float> luminances, std::uint32_t chains, std::uint32_t seed) {
-  const std::size_t half = luminances.size() / 2;
-  const std::span<const float> seeds = luminances.subspan(half);
-  const double total = sum(seeds);
+  const std::size_t quarter = luminances.size() / 4;
   MetropolisStart start;
-  start.brightness = total / static_cast<double>(seeds.size());
-  // The bound is far from where any picture comes out well: it keeps splats within the room of their sums.
-  start.scale =
-      std::max(sum(luminances.first(half)) / static_cast<double>(half), start.brightness / largest_brightness);
-  if (start.brightness == 0) return start;
-  // Systematic: one random number, then equal steps through the sum.
-  const double offset = uniform(seed);
-  std::size_t path = 0;
-  double reached = double{seeds[0]};
-  for (std::uint32_t chain = 0; chain < chains; ++chain) {
-    const double wanted = (chain + offset) / chains * total;
-    while (reached <= wanted && path + 1 < seeds.size()) reached += double{seeds[++path]};
-    // Rounding may leave the last steps beyond the sum.
-    while (seeds[path] == 0) --path;
-    start.paths.push_back(static_cast<std::uint32_t>(half + path));
+  start.scale = sum(luminances.first(2 * quarter)) / static_cast<double>(2 * quarter);
+  for (std::size_t group = 0; group < 2; ++group)
+    start.brightness[group] = sum(luminances.subspan((2 + group) * quarter, quarter)) / static_cast<double>(quarter);
+  const double both = (start.brightness[0] + start.brightness[1]) / 2;
+  if (both == 0) return start;
+  if (start.scale == 0) start.scale = both;
+  // Where a quarter has no light, the other has to do for both groups.
+  const bool shared = start.brightness[0] == 0 || start.brightness[1] == 0;
+  if (shared) start.brightness = {both, both};
+  start.paths.resize(chains);
+  for (std::uint32_t group = 0; group < 2; ++group) {
+    const std::size_t first = (shared ? 2 : 2 + group) * quarter;
+    const std::vector<std::uint32_t> chosen =
+        resampled(luminances.subspan(first, shared ? 2 * quarter : quarter), chains / 2, uniform(seed + group));
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      start.paths[2 * i + group] = static_cast<std::uint32_t>(first + chosen[i]);
   }
   return start;
 }
@@ -98,32 +117,36 @@ void MetropolisPicture::prepare(SceneOnDevice& scene) {
         {.size = words * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = label});
   };
   ray_counts_ = buffer(std::max(metropolis.bootstrap_paths, metropolis.chains), "ray counts");
-  splats_ = buffer(6 * pixels, "splats");
+  splats_ = buffer(12 * pixels, "splats");
   chains_ = buffer(std::uint64_t{metropolis.chains} * chain_words(stored_segments(settings)), "chains");
   bootstrap_ = buffer(metropolis.bootstrap_paths, "bootstrap paths");
   starts_ = buffer(metropolis.chains, "starts of chains");
   constants_ = buffer(sizeof(MetropolisConstants) / sizeof(std::uint32_t), "Metropolis constants");
   std::vector<rhi::BindGroupEntry> entries;
-  for (const rhi::BufferHandle& bound : {ray_counts_, splats_, chains_, bootstrap_, starts_, constants_})
+  large_splats_ = buffer(6 * pixels, "splats of large steps");
+  large_steps_ = buffer(std::uint64_t{metropolis.chains} * sizeof(LargeSteps) / sizeof(std::uint32_t), "large steps");
+  for (const rhi::BufferHandle& bound :
+       {ray_counts_, splats_, chains_, bootstrap_, starts_, constants_, large_splats_, large_steps_})
     entries.push_back({.binding = static_cast<std::uint32_t>(1 + entries.size()), .resource = rhi::BufferRange{bound}});
   group_ = scene.device().create_bind_group({.pipeline = scene.program(PathTraceTask::metropolis).pipeline(),
                                              .set = 1,
                                              .entries = entries,
                                              .label = "Metropolis"});
   const rhi::CommandListHandle list = scene.device().create_command_list("clear the chains");
-  for (const rhi::BufferHandle& zero : {ray_counts_, splats_, chains_, bootstrap_, starts_}) list->fill({zero}, 0);
+  for (const rhi::BufferHandle& zero :
+       {ray_counts_, splats_, chains_, bootstrap_, starts_, large_splats_, large_steps_})
+    list->fill({zero}, 0);
   scene.device().submit(list)->wait();
-  upload_constants(scene, 1, 1);
+  upload_constants(scene, 1);
 }
 
-void MetropolisPicture::upload_constants(SceneOnDevice& scene, double scale, double brightness) {
+void MetropolisPicture::upload_constants(SceneOnDevice& scene, double scale) {
   const RenderSettings& settings = scene.settings();
   const std::uint32_t segments = stored_segments(settings);
   const MetropolisConstants constants{.chain_words = chain_words(segments),
                                       .stored_segments = segments,
                                       .large_step = settings.metropolis.large_step,
-                                      .inverse_scale = static_cast<float>(1 / scale),
-                                      .normalisation = static_cast<float>(brightness / scale)};
+                                      .inverse_scale = static_cast<float>(1 / scale)};
   const rhi::CommandListHandle list = scene.device().create_command_list("Metropolis constants");
   list->upload(constants_, 0, std::as_bytes(std::span(&constants, 1)));
   scene.device().submit(list)->wait();
@@ -174,9 +197,10 @@ bool MetropolisPicture::bootstrap(SceneOnDevice& scene, Pace& pace, const Progre
   const std::vector<float> luminances = rhi::read<float>(scene.device(), bootstrap_, count);
   const MetropolisStart start = metropolis_start(luminances, scene.settings().metropolis.chains, scene.settings().seed);
   has_started_ = true;
-  if (start.brightness == 0) return true;
+  if (start.paths.empty()) return true;
   scale_ = start.scale;
-  upload_constants(scene, start.scale, start.brightness);
+  brightness_ = start.brightness;
+  upload_constants(scene, start.scale);
   const rhi::CommandListHandle list = scene.device().create_command_list("starts of chains");
   list->upload(starts_, 0, std::as_bytes(std::span(start.paths)));
   scene.device().submit(list)->wait();
@@ -237,10 +261,32 @@ Image MetropolisPicture::image(const SceneOnDevice& scene, std::uint32_t samples
   const RenderSettings& settings = scene.settings();
   Image image{settings.width, settings.height, {}};
   const std::size_t pixels = std::size_t{image.width} * image.height;
-  const std::vector<std::uint64_t> sums = rhi::read<std::uint64_t>(scene.device(), splats_, 3 * pixels);
-  const double factor = scale_ / splat_units / samples;
+  rhi::Device& device = scene.device();
+  const std::vector<std::uint64_t> sums = rhi::read<std::uint64_t>(device, splats_, 6 * pixels);
+  const std::vector<std::uint64_t> large = rhi::read<std::uint64_t>(device, large_splats_, 3 * pixels);
+  // What each group has found out about the brightness, by bootstrap paths and large steps.
+  const double bootstrap_paths = settings.metropolis.bootstrap_paths / 4;
+  std::array<double, 2> luminance = {brightness_[0] * bootstrap_paths, brightness_[1] * bootstrap_paths};
+  std::array<double, 2> paths = {bootstrap_paths, bootstrap_paths};
+  const std::vector<LargeSteps> large_steps = rhi::read<LargeSteps>(device, large_steps_, settings.metropolis.chains);
+  for (std::size_t chain = 0; chain < large_steps.size(); ++chain) {
+    luminance[chain % 2] += double{large_steps[chain].sum} + double{large_steps[chain].lost};
+    paths[chain % 2] += large_steps[chain].count;
+  }
+  std::array<double, 2> factors{};
+  for (std::size_t group = 0; group < 2; ++group) {
+    const std::size_t other = 1 - group;
+    const double known = luminance[other] / paths[other] + brightness_[group] - brightness_[other];
+    // One mutation is no pair: the other group has nothing to show.
+    const double share = mutations_ < 2 ? 1 : 0.5;
+    const double group_mutations = static_cast<double>(std::max<std::uint64_t>((mutations_ + other) / 2, 1));
+    factors[group] = share * known / splat_units * static_cast<double>(pixels) / group_mutations;
+  }
+  const double large_factor = scale_ / splat_units / samples;
   const auto value = [&](std::size_t channel) {
-    return static_cast<float>(static_cast<double>(sums[channel]) * factor);
+    return static_cast<float>(static_cast<double>(sums[channel]) * factors[0] +
+                              static_cast<double>(sums[3 * pixels + channel]) * factors[1] +
+                              static_cast<double>(large[channel]) * large_factor);
   };
   for (std::size_t i = 0; i < pixels; ++i) image.pixels.emplace_back(value(3 * i), value(3 * i + 1), value(3 * i + 2));
   return image;

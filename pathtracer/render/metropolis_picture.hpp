@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,24 +12,31 @@
 
 namespace tandem::pathtracer {
 
-/// Where chains begin.
+/// Where chains begin: even ones and odd ones are two groups, independent of each other.
 struct MetropolisStart {
-  double scale = 0;                  ///< luminance that splats are counted in; above 0 where `brightness` is
-  double brightness = 0;             ///< estimate of the mean luminance of all paths; 0: no path found any light
-  std::vector<std::uint32_t> paths;  ///< the bootstrap path of each chain, if there is light
+  double scale = 0;                    ///< luminance that splats are weighted by; above 0 where there is light
+  std::array<double, 2> brightness{};  ///< of each group, an estimate of the mean luminance of all paths
+  std::vector<std::uint32_t> paths;    ///< the bootstrap path of each chain; empty: none has any light
 };
 
-/// Half of the bootstrap paths give the scale. The others give the brightness, and the chains' first paths by
+/// Half of the bootstrap paths give the scale, a quarter each the brightness of a group and its chains' first paths by
 /// resampling: each is chosen in proportion to its luminance (Veach, Robust Monte Carlo Methods for Light Transport
-/// Simulation, 1997, section 11.3.1). So for any scale every state of a chain has the right expectation, times the
-/// brightness, however few paths there are; and the scale, which the weights of splats depend on, is independent of it.
-/// @param luminances of the bootstrap paths, an even number @param seed of the resampling
+/// Simulation, 1997, section 11.3.1). So every state of a chain, times the brightness of its group, has the right
+/// expectation, however few paths there are; and the scale, which the weights of splats depend on, is independent of
+/// it.
+/// @param luminances of the bootstrap paths, a multiple of 4 @param chains an even number @param seed of the resampling
 MetropolisStart metropolis_start(std::span<const float> luminances, std::uint32_t chains, std::uint32_t seed);
 
 /// A picture by Metropolis light transport in primary sample space (Kelemen et al. 2002), with many chains at once
 /// (shaders/metropolis). One sample of a pixel is one mutation for each pixel of the picture. Mutation m of the picture
 /// is mutation m / chains of chain m % chains, and what it adds is summed in integers, so the picture depends neither
 /// on how mutations are spread over dispatches and calls nor on the order in which a device runs them.
+///
+/// With S_g the sum of what the chains of group g splat, over their number, and B_g the brightness that they began
+/// with, B_g S_g has the right expectation. It is as bright as B_g by chance is, though, for as long as the picture
+/// grows. So (L_g - B_g) S_h is added, where L_g is the brightness that the large steps of group g have found as well,
+/// and h the other group: its expectation is 0, as the groups are independent, and all of L_g's paths tell the
+/// brightness.
 class MetropolisPicture {
  public:
   /// Makes program, buffers and bind groups. Throws rhi::Error.
@@ -55,13 +63,14 @@ class MetropolisPicture {
   void dispatch(SceneOnDevice& scene, std::uint32_t stage, const Range& range, std::uint32_t first_step,
                 std::uint32_t steps, Pace& pace);
   bool bootstrap(SceneOnDevice& scene, Pace& pace, const Progress& progress);
-  void upload_constants(SceneOnDevice& scene, double scale, double brightness);
+  void upload_constants(SceneOnDevice& scene, double scale);
   void collect_ray_counts(SceneOnDevice& scene);
 
-  rhi::BufferHandle ray_counts_, splats_, chains_, bootstrap_, starts_, constants_;
+  rhi::BufferHandle ray_counts_, splats_, chains_, bootstrap_, starts_, constants_, large_splats_, large_steps_;
   rhi::BindGroupHandle group_;
   bool has_started_ = false;
-  double scale_ = 0;  ///< luminance of a splat of 1; 0: black
+  double scale_ = 0;                    ///< luminance that splats are weighted by; 0: black
+  std::array<double, 2> brightness_{};  ///< of MetropolisStart
   std::uint64_t mutations_ = 0;
   std::uint64_t ray_count_ = 0;
   double device_milliseconds_ = 0;

@@ -33,11 +33,11 @@ void check_metropolis(const RenderSettings& settings) {
   if (settings.sampler != SamplerKind::independent)
     throw Error(fmt::format("sampler {} has no use in integrator metropolis, whose chains mutate independent numbers",
                             name_of(sampler_names(), settings.sampler)));
-  if (metropolis.chains == 0 || metropolis.chains > most_chains)
-    throw Error(fmt::format("{} chains are not between 1 and {}", metropolis.chains, most_chains));
-  if (metropolis.bootstrap_paths < 2 || metropolis.bootstrap_paths % 2 != 0 ||
+  if (metropolis.chains == 0 || metropolis.chains % 2 != 0 || metropolis.chains > most_chains)
+    throw Error(fmt::format("{} chains are not an even number between 2 and {}", metropolis.chains, most_chains));
+  if (metropolis.bootstrap_paths < 4 || metropolis.bootstrap_paths % 4 != 0 ||
       metropolis.bootstrap_paths > most_bootstrap_paths)
-    throw Error(fmt::format("{} bootstrap paths are not an even number between 2 and {}", metropolis.bootstrap_paths,
+    throw Error(fmt::format("{} bootstrap paths are not a multiple of 4 up to {}", metropolis.bootstrap_paths,
                             most_bootstrap_paths));
   if (!(metropolis.large_step > 0 && metropolis.large_step <= 1))
     throw Error(fmt::format("a probability of large steps of {} is not in (0, 1]", metropolis.large_step));

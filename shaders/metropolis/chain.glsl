@@ -13,10 +13,14 @@ struct MetropolisConstants {
   uint stored_segments;   // numbers of path segments beyond are new in every proposal
   float large_step;       // probability that a proposal is a path of its own
   float inverse_scale;    // 1 / the luminance that splats are counted in
-  float normalisation;    // mean luminance of all paths over that luminance
-  uint reserved_0;
-  uint reserved_1;
-  uint reserved_2;
+};
+
+// Of the large steps of a chain: the luminance of their paths, summed with compensation (Neumaier 1974).
+struct LargeSteps {
+  float sum;
+  float lost;  // by rounding
+  uint count;
+  uint reserved;
 };
 
 // A chain: what its state is, then its primary sample space, SLOT_WORDS for each stored dimension.
@@ -33,7 +37,10 @@ const uint SLOT_TIME = 8;         // CHAIN_TIME at which the current numbers are
 const uint SLOT_STEP = 9;         // the step whose proposal the proposed numbers are
 const uint SLOT_WORDS = 10;
 
-layout(set = 1, binding = 2, std430) buffer Splats { uint splats[]; };  // r, g, b of each pixel: 64 bits each, low word first
+// r, g, b of each pixel: 64 bits each, low word first.
+layout(set = 1, binding = 2, std430) buffer Splats { uint splats[]; };  // of states and proposals of even chains, then of odd ones
+layout(set = 1, binding = 7, std430) buffer LargeSplats { uint large_splats[]; };  // of large steps, as paths of their own
+layout(set = 1, binding = 8, std430) buffer LargeStepSums { LargeSteps large_steps[]; };  // of each chain
 layout(set = 1, binding = 3, std430) buffer Chains { uint chains[]; };
 layout(set = 1, binding = 4, std430) buffer Bootstrap { float bootstrap[]; };    // luminance of each bootstrap path
 layout(set = 1, binding = 5, std430) readonly buffer Starts { uint starts[]; };  // bootstrap path that a chain begins with

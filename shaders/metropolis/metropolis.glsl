@@ -78,12 +78,21 @@ void store_chain(Proposal state) {
   chains[chain_base + CHAIN_ORIGIN + 1] = chain_origin.y;
 }
 
-/// Adds the light of a path, a proposal or the state, that counts with `weight`: the expected value over whether the
-/// proposal is accepted, weighted against finding the path by a large step (Kelemen et al., section 3.3).
-void splat_path(Proposal path, float weight) {
-  precise float scaled_luminance = path.luminance * metropolis.inverse_scale;
-  precise float factor = det_div(weight * metropolis.inverse_scale, scaled_luminance + metropolis.large_step);
-  splat(path.pixel, path.radiance * factor);
+/// The radiance of a path over its luminance, or over what a large step finds it with where that is more (the balance
+/// heuristic; Kelemen et al., section 3.3), in units of the scale.
+precise vec3 weighted_radiance(Proposal path) {
+  precise float denominator = path.luminance * metropolis.inverse_scale + metropolis.large_step;
+  return path.radiance * det_div(metropolis.inverse_scale, denominator);
+}
+
+void count_large_step(uint chain, float luminance) {
+  precise float sum = large_steps[chain].sum;
+  precise float lost = large_steps[chain].lost;
+  precise float next = sum + luminance;
+  lost += sum >= luminance ? (sum - next) + luminance : (luminance - next) + sum;
+  large_steps[chain].sum = next;
+  large_steps[chain].lost = lost;
+  large_steps[chain].count += 1;
 }
 
 /// What the next proposal is. Bootstrap paths are keyed by (index, 0), those of chains by (chain, step).
@@ -124,8 +133,15 @@ void metropolis_light_transport(uint invocation) {
     if (stage == STAGE_MUTATE) {
       precise float acceptance =
           proposal.luminance >= state.luminance ? 1.0 : det_div(proposal.luminance, state.luminance);
-      splat_path(proposal, acceptance * metropolis.normalisation + (chain_is_large ? 1.0 : 0.0));
-      splat_path(state, (1.0 - acceptance) * metropolis.normalisation);
+      // Both the proposal and the state count, with the probability that they are the next state.
+      precise vec3 proposed = weighted_radiance(proposal);
+      uint group = (index & 1u) * render.resolution.x * render.resolution.y;
+      splat(group + proposal.pixel, proposed * acceptance);
+      splat(group + state.pixel, weighted_radiance(state) * (1.0 - acceptance));
+      if (chain_is_large) {
+        splat_large(proposal.pixel, proposed);
+        count_large_step(index, proposal.luminance);
+      }
       accepted = unit_interval(decision_bits(chain_proposal).y) < acceptance;
     }
     if (!accepted) continue;

@@ -6,22 +6,33 @@
 
 #include "metropolis/chain.glsl"
 
-/// Units of a splat of 1. A splat is below 2^8, so the sum of 2^32 of them, more than a picture has, is below 2^64.
-const float SPLAT_UNITS = 16777216.0;
+/// Units of a splat of 1. The luminance of a splat is at most 1, as splat_path weights it, so each channel is below 14
+/// and has fewer than 2^32 units; the sum of 2^32 of them, more than a picture has, is below 2^64.
+const float SPLAT_UNITS = 268435456.0;
 
-void splat_channel(uint channel, float value) {
-  if (!(value > 0.0)) return;
-  precise float units = value * SPLAT_UNITS + 0.5;
-  uint addend = units < 4294967040.0 ? uint(units) : 4294967040u;
-  if (addend == 0) return;
-  uint before = atomicAdd(splats[2 * channel], addend);
-  if (before + addend < before) atomicAdd(splats[2 * channel + 1], 1u);
+uint splat_units(float value) {
+  precise float units = value > 0.0 ? value * SPLAT_UNITS + 0.5 : 0.0;
+  return units < 4294967040.0 ? uint(units) : 4294967040u;
 }
 
 void splat(uint pixel, vec3 value) {
-  splat_channel(3 * pixel, value.x);
-  splat_channel(3 * pixel + 1, value.y);
-  splat_channel(3 * pixel + 2, value.z);
+  uvec3 units = uvec3(splat_units(value.x), splat_units(value.y), splat_units(value.z));
+  for (uint i = 0; i < 3; ++i) {
+    if (units[i] == 0) continue;
+    uint word = 6 * pixel + 2 * i;
+    uint before = atomicAdd(splats[word], units[i]);
+    if (before + units[i] < before) atomicAdd(splats[word + 1], 1u);
+  }
+}
+
+void splat_large(uint pixel, vec3 value) {
+  uvec3 units = uvec3(splat_units(value.x), splat_units(value.y), splat_units(value.z));
+  for (uint i = 0; i < 3; ++i) {
+    if (units[i] == 0) continue;
+    uint word = 6 * pixel + 2 * i;
+    uint before = atomicAdd(large_splats[word], units[i]);
+    if (before + units[i] < before) atomicAdd(large_splats[word + 1], 1u);
+  }
 }
 
 #endif

@@ -89,6 +89,7 @@ void add_study_command(CLI::App& app, Action& action) {
       "  tandem study sampling --device cpu --markdown sampling.md");
   command->callback([&action, options] { action = [options] { return study_sampling(*options); }; });
   add_study_markov_command(*group, action);
+  add_study_metropolis_command(*group, action);
 }
 
 }  // namespace tandem::tools

@@ -3,6 +3,7 @@
 
 #include "pathtracer/render/metropolis_picture.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -33,9 +34,7 @@ RenderSettings metropolis_settings() {
   return settings;
 }
 
-Scene door() {
-  return load_scene(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes" / "door.json");
-}
+Scene door() { return load_scene(std::filesystem::path(TANDEM_SOURCE_DIRECTORY) / "scenes" / "door.json"); }
 
 Image picture(const rhi::DeviceHandle& device, const Scene& scene, const RenderSettings& settings,
               std::uint32_t samples) {
@@ -77,41 +76,44 @@ bool same_bits(const Image& a, const Image& b) {
 }  // namespace
 
 TEST_CASE("Chains begin with bootstrap paths in proportion to their luminance") {
-  // Half of the paths only scale; of the others, the chains get 1, 0, 3 and 4 eighths.
-  const std::vector<float> luminances = {1, 2, 3, 2, 1, 0, 3, 4};
-  const MetropolisStart start = metropolis_start(luminances, 80, 7);
+  // Half of the paths only scale; even chains get one of 1, 0, 3 and 4 eighths, odd ones one of 2, 2, 0 and 12.
+  const std::vector<float> luminances = {1, 2, 3, 2, 2, 2, 2, 2, 1, 0, 3, 4, 2, 2, 0, 12};
+  const MetropolisStart start = metropolis_start(luminances, 160, 7);
   CHECK(start.scale == 2);
-  CHECK(start.brightness == 2);
-  REQUIRE(start.paths.size() == 80);
+  CHECK(start.brightness == std::array<double, 2>{2, 4});
+  REQUIRE(start.paths.size() == 160);
   std::vector<int> counts(luminances.size());
-  for (const std::uint32_t path : start.paths) ++counts[path];
+  for (std::size_t chain = 0; chain < start.paths.size(); ++chain) {
+    CHECK(start.paths[chain] / 4 == 2 + chain % 2);
+    ++counts[start.paths[chain]];
+  }
   // Equal steps hit an interval as often as its length says, but for one.
-  for (std::size_t path = 0; path < counts.size(); ++path)
-    CHECK(std::abs(counts[path] - (path < 4 ? 0 : 10 * static_cast<int>(luminances[path]))) <= 1);
-  CHECK(counts[5] == 0);
+  const std::vector<int> expected = {0, 0, 0, 0, 0, 0, 0, 0, 10, 0, 30, 40, 10, 10, 0, 60};
+  for (std::size_t path = 0; path < counts.size(); ++path) CHECK(std::abs(counts[path] - expected[path]) <= 1);
+  for (const std::size_t dark : {9, 14}) CHECK(counts[dark] == 0);
 }
 
-TEST_CASE("Chains of a picture without light do not begin; a scale that is too small for the sums is raised") {
-  CHECK(metropolis_start(std::vector<float>(8, 0.0f), 4, 0).brightness == 0);
+TEST_CASE("Chains of a picture without light do not begin; those of a little light share it") {
+  CHECK(metropolis_start(std::vector<float>(8, 0.0f), 4, 0).paths.empty());
   const MetropolisStart start = metropolis_start(std::vector<float>{0, 0, 0, 0, 0, 0, 0, 8}, 4, 0);
-  CHECK(start.brightness == 2);
-  CHECK(start.scale == 0.125);
+  CHECK(start.brightness == std::array<double, 2>{2, 2});
+  CHECK(start.scale == 2);
   CHECK(start.paths == std::vector<std::uint32_t>(4, 7));
 }
 
 TEST_CASE("Metropolis and path tracing have the same image of the Cornell box") {
   const Scene scene = study::weekend_box();
   // The smallest of the p-values of four such tests is expected at 0.2; one of 1e-3 comes by chance once in 250 times.
-  CHECK(p_value(pictures(scene, metropolis_settings(), 128, 12, 0), path_traced(scene, metropolis_settings(), 128, 24)) >
-        1e-3);
+  CHECK(p_value(pictures(scene, metropolis_settings(), 128, 12, 0),
+                path_traced(scene, metropolis_settings(), 128, 24)) > 1e-3);
 }
 
 TEST_CASE("An image by Metropolis that is darker by a twentieth is found out") {
   const Scene scene = study::weekend_box();
   Scene darker = scene;
   for (GpuMaterial& material : darker.materials) material.emission *= 0.95f;
-  CHECK(p_value(pictures(darker, metropolis_settings(), 128, 12, 0),
-                path_traced(scene, metropolis_settings(), 128, 24)) < 1e-4);
+  CHECK(p_value(pictures(darker, metropolis_settings(), 256, 24, 0),
+                path_traced(scene, metropolis_settings(), 256, 24)) < 1e-4);
 }
 
 TEST_CASE("Metropolis has no start-up bias: many pictures of few bootstrap paths have the right mean") {
