@@ -3,7 +3,7 @@
 #extension GL_EXT_ray_query : require
 #extension GL_GOOGLE_include_directive : require
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 16) in;
 
 #include "metropolis/metropolis.glsl"
 

@@ -6,7 +6,6 @@
 
 #include "base/progress.hpp"
 #include "compare/study/sampling_study.hpp"
-#include "pathtracer/image/image.hpp"
 #include "pathtracer/render/renderer.hpp"
 
 /// What Metropolis light transport is worth in a scene: its error against that of path tracing in the same time.
@@ -14,11 +13,13 @@ namespace tandem::study {
 
 struct MetropolisStudySettings {
   std::vector<std::uint32_t> sample_counts = {16, 64, 256};  ///< of both integrators, ascending
-  std::uint32_t reference_samples = 4096;                    ///< of a Metropolis picture under another seed
+  std::uint32_t pictures = 4;  ///< of each count, at least 2: under seeds from that of the renderer's settings on
 };
 
 struct IntegratorResult {
-  std::vector<Measurement> measurements;  ///< in the order of the counts
+  /// In the order of the counts. An error is the standard deviation of a pixel's channel between pictures under
+  /// different seeds, and needs no reference: neither integrator is biased. The seconds are the mean.
+  std::vector<Measurement> measurements;
 
   /// The error that the integrator would have after `seconds`, by the last measurement and N^-1/2.
   double error_after(double seconds) const;
@@ -27,6 +28,8 @@ struct IntegratorResult {
 struct MetropolisResult {
   IntegratorResult path;
   IntegratorResult metropolis;
+  /// That chance alone makes the pictures of the largest count differ so much between the integrators.
+  double bias_p_value = 1;
 
   /// The error of path tracing over that of Metropolis, in the time of the last Metropolis picture.
   double error_ratio() const;

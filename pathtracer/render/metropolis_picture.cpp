@@ -20,7 +20,7 @@ constexpr std::uint32_t stage_mutate = 2;
 constexpr std::uint32_t chain_header = 9;
 constexpr std::uint32_t slot_words = 10;
 constexpr double splat_units = 1 << 28;
-constexpr std::uint32_t workgroup_size = 64;
+constexpr std::uint32_t workgroup_size = 16;  // few: a device may have more processors than that many chains fill
 
 /// Beyond these segments, few paths still matter to a chain.
 constexpr std::uint32_t most_stored_segments = 32;

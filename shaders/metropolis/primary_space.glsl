@@ -9,11 +9,12 @@
 
 const uint NO_SLOT = 0xffffffffu;
 
-// Sizes of a small mutation: between these, evenly distributed by logarithm (Kelemen et al., section 3.2). Its standard
-// deviation is ((b^2 - a^2) / (2 ln(b / a)))^1/2.
+// Sizes of a small mutation: between a = 2^-14 and b = 2^-6, evenly distributed by logarithm (Kelemen et al., section 3.2,
+// whose a is 2^-10: more of what lies behind a gap is lost then). Its standard deviation is ((b^2 - a^2) / (2 ln(b /
+// a)))^1/2.
 const float LARGEST_MUTATION = 0.015625;
-const float LOG_MUTATION_RANGE = 2.77258872;  // ln(16)
-const float MUTATION_DEVIATION = 0.00662271;
+const float LOG_MUTATION_RANGE = 5.54517744;
+const float MUTATION_DEVIATION = 0.00469187;
 
 /// Where the chain stores the four numbers of the dimension.
 uint slot_of(uint dimension) {

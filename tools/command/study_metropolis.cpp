@@ -38,19 +38,19 @@ void add_rows(std::string& text, const char* name, const study::IntegratorResult
 std::string markdown(const rhi::DeviceInfo& device, const compare::Job& job,
                      const study::MetropolisStudySettings& settings, const study::MetropolisResult& result) {
   std::string text = fmt::format(
-      "Measured on {} ({}) by `tandem study metropolis {}`: {}x{} pixels, depth {}, errors against a Metropolis "
-      "picture "
-      "of {} samples per pixel.\n\n| integrator | samples |  seconds |      RMSE |\n|------------|--------:|---------:|"
+      "Measured on {} ({}) by `tandem study metropolis {}`: {}x{} pixels, depth {}, errors between {} pictures under "
+      "different seeds.\n\n| integrator | samples |  seconds |      RMSE |\n|------------|--------:|---------:|"
       "----------:|\n",
       device.name, device.description, job.file.string(), job.settings.width, job.settings.height,
-      job.settings.max_depth, settings.reference_samples);
+      job.settings.max_depth, settings.pictures);
   add_rows(text, "path", result.path);
   add_rows(text, "metropolis", result.metropolis);
   const study::Measurement& last = result.metropolis.measurements.back();
-  fmt::format_to(std::back_inserter(text),
-                 "\nIn {:.2f} seconds path tracing has an RMSE of {:.5f} (by N^-1/2 from its last row): {:.2f} times "
-                 "that of Metropolis.\n",
-                 last.seconds, result.path.error_after(last.seconds), result.error_ratio());
+  fmt::format_to(
+      std::back_inserter(text),
+      "\nIn {:.2f} seconds path tracing has an RMSE of {:.5f} (by N^-1/2 from its last row): {:.2f} times "
+      "that of Metropolis. That chance alone makes their means differ as they do has a probability of {:.2g}.\n",
+      last.seconds, result.path.error_after(last.seconds), result.error_ratio(), result.bias_p_value);
   return text;
 }
 
@@ -89,13 +89,13 @@ void add_study_metropolis_command(CLI::App& group, Action& action) {
   add_render_options(*command, options->render);
   add_device(*command, options->device, "Device to render on, as listed by 'tandem devices'",
              "run the study once for each");
-  add_whole_number(*command, "--reference-spp", options->settings.reference_samples, 1, 1u << 24,
-                   "Samples per pixel of the reference image");
+  add_whole_number(*command, "--pictures", options->settings.pictures, 2, 1000,
+                   "Pictures under different seeds, from whose spread an error is known");
   command->add_option("--markdown", options->markdown, "Write the table as Markdown")->type_name("FILE");
   command->footer(
       "Both integrators render with --spp samples per pixel, and with 4 and 16 times fewer.\n"
       "Example:\n"
-      "  tandem study metropolis scenes/door.json --size 160x120 --spp 256");
+      "  tandem study metropolis scenes/door.json --spp 64");
   command->callback([&action, options] { action = [options] { return study_metropolis(*options); }; });
 }
 
