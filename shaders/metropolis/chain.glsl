@@ -1,6 +1,6 @@
 // Metropolis light transport in primary sample space (Kelemen, Szirmay-Kalos, Antal and Csonka, A Simple and Robust
 // Mutation Strategy for the Metropolis Light Transport Algorithm, 2002): a chain walks over the random numbers that a
-// path is made of. Here: the buffers, and where a chain is. pathtracer/render/metropolis_buffers.hpp says the same.
+// path is made of. Here: the buffers, and where a chain is. pathtracer/render/metropolis_picture.cpp says the same.
 
 #ifndef TANDEM_METROPOLIS_CHAIN
 #define TANDEM_METROPOLIS_CHAIN
