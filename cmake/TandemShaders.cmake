@@ -7,7 +7,8 @@ list(TRANSFORM TANDEM_KERNEL_OPTIONS REPLACE "^ *\"([^\"]*)\".*" "\\1")
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
                                        "${CMAKE_CURRENT_LIST_DIR}/../rhi_cpu/translate/compile_options.hpp")
 
-# tandem_add_shaders(NAME SOURCES a.comp b.rgen ... [INCLUDE_DIRECTORIES ...] [SPECIALIZATIONS "0=1" "0=1,3=2" ...])
+# tandem_add_shaders(NAME SOURCES a.comp b.rgen ... [INCLUDE_DIRECTORIES ...] [SPECIALIZATIONS "0=1" "0=1,3=2" ...]
+#                    [WITHOUT_KERNELS b.rgen ...])
 #
 # Sources are compute shaders (.comp) and the stages of ray tracing pipelines (.rgen .rmiss .rchit .rahit .rint .rcall).
 # For each (relative to the current directory) the function of its name without extension, e.g. render.comp, and with the
@@ -20,10 +21,12 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS
 # Each of SPECIALIZATIONS is a set of constant=value for which kernels are made of every source, or with @REGEX behind it of
 # those whose names match, beside the kernels with the defaults: others have to be compiled when they are used.
 #
+# WITHOUT_KERNELS: sources of which there is no kernel.
+#
 # SPIR-V keeps its debug information, so that a debugger shows the GLSL. A shader is rebuilt when it or anything that it
 # includes has changed.
 function(tandem_add_shaders name)
-  cmake_parse_arguments(PARSE_ARGV 1 shaders "" "" "SOURCES;INCLUDE_DIRECTORIES;SPECIALIZATIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 shaders "" "" "SOURCES;INCLUDE_DIRECTORIES;SPECIALIZATIONS;WITHOUT_KERNELS")
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${name}.generated")
   set(include_options)
   foreach(directory IN LISTS shaders_INCLUDE_DIRECTORIES)
@@ -70,8 +73,11 @@ function(tandem_add_shaders name)
       COMMENT "SPIR-V to C++: ${source}"
       VERBATIM)
     list(APPEND words_sources "${folder}/${shader}_words.cpp")
-    list(APPEND kernel_sources "${folder}/${shader}_kernel.cpp")
     string(APPEND word_declarations "std::span<const std::uint32_t> ${shader}();\n")
+    if(source IN_LIST shaders_WITHOUT_KERNELS)
+      continue()
+    endif()
+    list(APPEND kernel_sources "${folder}/${shader}_kernel.cpp")
     string(APPEND entry_declarations "extern \"C\" const tandem::kernel::KernelInfo* ${entry}();\n")
     string(APPEND kernel_entries "      {${shader}(), ${entry}},\n")
     set(number 0)

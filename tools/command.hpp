@@ -43,6 +43,10 @@ void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_conformance_command(CLI::App& app, Action& action);
 void add_study_command(CLI::App& app, Action& action);
+/// `study markov`, a subcommand of `study`.
+void add_study_markov_command(CLI::App& group, Action& action);
+/// `study metropolis`, likewise.
+void add_study_metropolis_command(CLI::App& group, Action& action);
 void add_matrix_command(CLI::App& app, Action& action);
 void add_suite_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);

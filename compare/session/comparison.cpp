@@ -25,6 +25,7 @@ ComparedDevices with_programs(rhi::DeviceHandle a, rhi::DeviceHandle b, rhi::Dev
 
 Session prepare(ComparedDevices devices, Job job, const ComparisonOptions& options) {
   if (options.classify && !devices.arbiter) throw std::invalid_argument("prepare: classify takes an arbiter");
+  if (options.classify) check_has_paths(job.settings);
   if (options.classify && options.thresholds.tier == Tier::statistical)
     throw std::invalid_argument("prepare: tier statistical has no paths to classify");
   pathtracer::Renderer a(devices.a, job.scene, job.settings, options.trace_a, devices.programs_a);

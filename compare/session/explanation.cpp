@@ -23,6 +23,7 @@ bool has_mismatch(const ExplainedSample& sample) {
 }
 
 void check(const ExplanationOptions& options, const Job& job) {
+  check_has_paths(job.settings);
   if (options.pixel.x >= job.settings.width || options.pixel.y >= job.settings.height) {
     throw Error(fmt::format("pixel {},{} is outside the image of {}x{} pixels", options.pixel.x, options.pixel.y,
                             job.settings.width, job.settings.height));

@@ -1,5 +1,6 @@
 #include "compare/session/job.hpp"
 
+#include "base/error.hpp"
 #include "pathtracer/scene/hash.hpp"
 
 namespace tandem::compare {
@@ -12,6 +13,13 @@ JobSummary summary(const Job& job) {
           .spheres = job.scene.spheres.size(),
           .settings = job.settings,
           .samples = job.samples};
+}
+
+void check_has_paths(const pathtracer::RenderSettings& settings) {
+  if (settings.integrator == pathtracer::Integrator::metropolis)
+    throw Error(
+        "with integrator metropolis a pixel has no paths of its own that could be explained or classified: ask for "
+        "them with integrator path");
 }
 
 }  // namespace tandem::compare

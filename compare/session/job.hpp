@@ -30,4 +30,7 @@ struct JobSummary {
 
 JobSummary summary(const Job& job);
 
+/// Throws Error unless a pixel is the mean of paths of its own, which can be recorded and judged.
+void check_has_paths(const pathtracer::RenderSettings& settings);
+
 }  // namespace tandem::compare

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <span>
 
+#include "metropolis_shaders/spirv.hpp"
 #include "shaders/spirv.hpp"
 
 namespace tandem::pathtracer {
@@ -23,6 +24,8 @@ EntryPoint compute_shader(PathTraceTask task) {
       return {shaders::ray_answer(), "ray_answer.comp"};
     case PathTraceTask::first_hit:
       return {shaders::first_hit(), "first_hit.comp"};
+    case PathTraceTask::metropolis:
+      return {metropolis_shaders::metropolis(), "metropolis.comp"};
     default:
       return {shaders::path_trace(), "path_trace.comp"};
   }
@@ -36,6 +39,8 @@ EntryPoint ray_generation_shader(PathTraceTask task) {
       return {shaders::ray_answer_rgen(), "ray_answer.rgen"};
     case PathTraceTask::first_hit:
       return {shaders::first_hit_rgen(), "first_hit.rgen"};
+    case PathTraceTask::metropolis:
+      return {metropolis_shaders::metropolis_rgen(), "metropolis.rgen"};
     default:
       return {shaders::path_trace_rgen(), "path_trace.rgen"};
   }
@@ -89,7 +94,8 @@ rhi::ShaderTableHandle shader_table(rhi::Device& device, PathTraceTask task, Fea
 Features task_features(Features needed, PathTraceTask task) {
   const Features features = built_features(needed);
   constexpr Features light = feature::transparency | feature::spheres | feature::cameras;
-  if (task == PathTraceTask::picture || (features & ~light) == 0) return features;
+  const bool is_picture = task == PathTraceTask::picture || task == PathTraceTask::metropolis;
+  if (is_picture || (features & ~light) == 0) return features;
   return feature::all;
 }
 

@@ -16,7 +16,8 @@ enum class PathTraceTask {
   picture,    ///< shaders/path_trace.glsl: adds samples to the sums of a pixel
   log,        ///< shaders/path_log.glsl: records the events of a path
   first_hit,  ///< shaders/first_hit.glsl: adds samples to sums of what a pixel shows first
-  answer      ///< shaders/ray_answer.glsl: traces one ray again
+  answer,     ///< shaders/ray_answer.glsl: traces one ray again
+  metropolis  ///< shaders/metropolis/metropolis.glsl: steps of a chain
 };
 
 /// What a program for `features` has built in: tasks other than the picture are rare, so fewer sets are built for them.

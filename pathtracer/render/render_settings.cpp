@@ -14,11 +14,33 @@ namespace {
 constexpr std::uint32_t maximum_side = 1u << 16;
 /// Far beyond use, and far from where the counts of rays could overflow.
 constexpr std::uint32_t maximum_depth = 1u << 16;
+constexpr std::uint32_t most_chains = 1u << 20;
+constexpr std::uint32_t most_bootstrap_paths = 1u << 24;
 constexpr std::uint32_t unlimited = std::numeric_limits<std::uint32_t>::max();
+
+/// Of the paths: chains are another matter.
+Integrator shader_integrator(const RenderSettings& settings) {
+  return settings.integrator == Integrator::metropolis ? Integrator::path : settings.integrator;
+}
 
 void check_bound(float value, const char* what) {
   if (!(value >= 0) || !std::isfinite(value))
     throw Error(fmt::format("{} of {} is not finite and at least 0", what, value));
+}
+
+void check_metropolis(const RenderSettings& settings) {
+  const MetropolisSettings& metropolis = settings.metropolis;
+  if (settings.sampler != SamplerKind::independent)
+    throw Error(fmt::format("sampler {} has no use in integrator metropolis, whose chains mutate independent numbers",
+                            name_of(sampler_names(), settings.sampler)));
+  if (metropolis.chains == 0 || metropolis.chains % 2 != 0 || metropolis.chains > most_chains)
+    throw Error(fmt::format("{} chains are not an even number between 2 and {}", metropolis.chains, most_chains));
+  if (metropolis.bootstrap_paths < 4 || metropolis.bootstrap_paths % 4 != 0 ||
+      metropolis.bootstrap_paths > most_bootstrap_paths)
+    throw Error(fmt::format("{} bootstrap paths are not a multiple of 4 up to {}", metropolis.bootstrap_paths,
+                            most_bootstrap_paths));
+  if (!(metropolis.large_step > 0 && metropolis.large_step <= 1))
+    throw Error(fmt::format("a probability of large steps of {} is not in (0, 1]", metropolis.large_step));
 }
 
 }  // namespace
@@ -36,6 +58,7 @@ void check(const RenderSettings& settings) {
   check_bound(settings.clamp_direct, "a bound of direct light");
   check_bound(settings.clamp_indirect, "a bound of indirect light");
   if (!(settings.occlusion_length > 0)) throw Error("the length of the rays of ambient occlusion is not positive");
+  if (settings.integrator == Integrator::metropolis) check_metropolis(settings);
   if (settings.background)
     for (const float value : {settings.background->x, settings.background->y, settings.background->z})
       if (!(value >= 0) || !std::isfinite(value))
@@ -73,7 +96,7 @@ RenderSettings render_settings(const SceneSettings& given) {
 Features features_of(const RenderSettings& settings) {
   Features features = settings.further_features;
   if (settings.sampler != SamplerKind::independent) features |= feature::samplers;
-  const bool is_usual = settings.integrator == Integrator::path && settings.light_sampling &&
+  const bool is_usual = shader_integrator(settings) == Integrator::path && settings.light_sampling &&
                         settings.mis == Mis::power && settings.bsdf_sampling == BsdfSampling::bsdf &&
                         settings.roulette && !settings.max_diffuse_depth && !settings.max_glossy_depth &&
                         !settings.max_specular_depth && settings.clamp_direct == 0 && settings.clamp_indirect == 0 &&
@@ -91,7 +114,7 @@ void set_options(RenderConstants& constants, const RenderSettings& settings) {
   constants.seed = settings.seed;
   constants.sampler_kind = settings.sampler;
   constants.sampler_total = settings.planned_samples;
-  constants.integrator = settings.integrator;
+  constants.integrator = shader_integrator(settings);
   constants.light_sampling = settings.light_sampling ? 1 : 0;
   constants.mis = settings.mis;
   constants.bsdf_sampling = settings.bsdf_sampling;

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 
 #include "pathtracer/render/features.hpp"
+#include "pathtracer/render/metropolis_settings.hpp"
 #include "pathtracer/scene/buffers.hpp"
 #include "pathtracer/scene/camera.hpp"
 #include "pathtracer/scene/settings.hpp"
@@ -24,6 +25,7 @@ struct RenderSettings {
   std::optional<glm::vec3> background = {};
 
   Integrator integrator = Integrator::path;
+  MetropolisSettings metropolis = {};  ///< of Integrator::metropolis
   SamplerKind sampler = SamplerKind::independent;
   /// Samples of a pixel that will be taken in all: what Hammersley points and strata are laid out for.
   std::uint32_t planned_samples = 16;

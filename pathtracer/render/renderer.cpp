@@ -33,6 +33,11 @@ Renderer::Renderer(rhi::DeviceHandle device, const Scene& scene, const RenderSet
 void Renderer::prepare() {
   if (picture_group_) return;
   const Clock::time_point start = Clock::now();
+  if (metropolis_) {
+    metropolis_->prepare(scene_);
+    compile_milliseconds_ += milliseconds_since(start);
+    return;
+  }
   picture_group_ =
       scene_.device().create_bind_group({.pipeline = scene_.program(PathTraceTask::picture).pipeline(),
                                          .set = 1,
@@ -47,7 +52,11 @@ void Renderer::warm_up() {
   if (is_warm_) return;
   const Clock::time_point start = Clock::now();
   // No sample is added to the sum of the first pixel.
-  scene_.execute("warm up", [&](rhi::CommandList& list) { record(list, {.sample_count = 0}); });
+  if (metropolis_) {
+    metropolis_->warm_up(scene_);
+  } else {
+    scene_.execute("warm up", [&](rhi::CommandList& list) { record(list, {.sample_count = 0}); });
+  }
   compile_milliseconds_ += milliseconds_since(start);
   is_warm_ = true;
 }
@@ -61,6 +70,8 @@ void Renderer::restart(const RenderSettings& settings) {
     ray_counts_ = scene_.device().create_buffer(
         {.size = pixels * sizeof(std::uint32_t), .usage = rhi::BufferUsage::storage, .label = "ray counts"});
   }
+  metropolis_.reset();
+  if (settings.integrator == Integrator::metropolis) metropolis_.emplace();
   picture_group_ = nullptr;  // the settings may ask for another program
   is_warm_ = false;
   compile_milliseconds_ = 0;
@@ -78,6 +89,7 @@ void Renderer::clear_picture() {
   list->fill({radiance_sum_}, 0);
   list->fill({ray_counts_}, 0);
   scene_.device().submit(list)->wait();
+  if (metropolis_) metropolis_.emplace();
   samples_ = 0;
   ray_count_ = 0;
   device_milliseconds_ = 0;
@@ -109,6 +121,14 @@ bool Renderer::render(std::uint32_t samples, const Progress& progress) {
   if (samples > std::numeric_limits<std::uint32_t>::max() - samples_)
     throw Error(fmt::format("{} samples after {} are more than can be counted", samples, samples_));
   warm_up();
+  if (metropolis_) {
+    if (!metropolis_->render(scene_, samples_ + samples, pace_, progress)) {
+      clear_picture();
+      return false;
+    }
+    samples_ += samples;
+    return true;
+  }
   const RenderSettings& settings = scene_.settings();
   const glm::uvec2 resolution(settings.width, settings.height);
   const double pixels = double(resolution.x) * double(resolution.y);
@@ -146,6 +166,7 @@ Image Renderer::image() const {
   Image image{settings.width, settings.height, {}};
   image.pixels.resize(std::size_t{image.width} * image.height, glm::vec3(0));
   if (samples_ == 0) return image;
+  if (metropolis_) return metropolis_->image(scene_, samples_);
   scene_.device().download(radiance_sum_, 0, std::as_writable_bytes(std::span(image.pixels)));
   for (glm::vec3& pixel : image.pixels) pixel /= static_cast<float>(samples_);
   return image;

@@ -8,13 +8,15 @@
 #include "pathtracer/image/image.hpp"
 #include "pathtracer/image/image_io.hpp"
 #include "pathtracer/render/dispatch_plan.hpp"
+#include "pathtracer/render/metropolis_picture.hpp"
 #include "pathtracer/render/scene_on_device.hpp"
 
 namespace tandem::pathtracer {
 
 /// The picture of a scene that accumulates on a device.
 ///
-/// A pixel is the sum of its samples 0, 1, 2, ... in that order, so the result depends neither on tiles nor on how
+/// Integrator metropolis is another matter: see MetropolisPicture, whose samples have the same property. Otherwise
+/// a pixel is the sum of its samples 0, 1, 2, ... in that order, so the result depends neither on tiles nor on how
 /// samples are spread over calls: render(16) and 16 times render(1) agree to the last bit.
 class Renderer {
  public:
@@ -41,11 +43,13 @@ class Renderer {
   Image image() const;
   std::uint32_t samples() const noexcept { return samples_; }
   /// Rays traced for the samples of the picture, counted by the shader.
-  std::uint64_t ray_count() const noexcept { return ray_count_; }
+  std::uint64_t ray_count() const noexcept { return metropolis_ ? metropolis_->ray_count() : ray_count_; }
   /// Time that prepare and warm_up have taken since the last restart, by the host's clock: what compiling takes.
   double compile_milliseconds() const noexcept { return compile_milliseconds_; }
   /// Time that the dispatches took: by the device's timestamps where it has them, else by the host's clock.
-  double device_milliseconds() const noexcept { return device_milliseconds_; }
+  double device_milliseconds() const noexcept {
+    return metropolis_ ? metropolis_->device_milliseconds() : device_milliseconds_;
+  }
 
   /// The scene and the settings, for whatever else is asked of them on this device. Its settings are changed through
   /// the renderer only.
@@ -62,6 +66,7 @@ class Renderer {
   void collect_ray_counts();
 
   SceneOnDevice scene_;
+  std::optional<MetropolisPicture> metropolis_;  ///< of Integrator::metropolis, in place of the sums
   rhi::BindGroupHandle picture_group_;
   rhi::BufferHandle radiance_sum_, ray_counts_;
   std::uint32_t samples_ = 0;

@@ -196,7 +196,8 @@ enum class SamplerKind : std::uint32_t {
   sobol = 4,
   blue_noise = 5
 };
-enum class Integrator : std::uint32_t { path = 0, direct = 1, ambient_occlusion = 2 };
+/// metropolis: the chains of shaders/metropolis over paths of integrator path; no shader knows the value.
+enum class Integrator : std::uint32_t { path = 0, direct = 1, ambient_occlusion = 2, metropolis = 3 };
 enum class Mis : std::uint32_t { none = 0, balance = 1, power = 2 };
 enum class BsdfSampling : std::uint32_t { bsdf = 0, cosine = 1, uniform = 2 };
 

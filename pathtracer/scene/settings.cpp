@@ -30,8 +30,10 @@ SceneSettings merged(const SceneSettings& first, const SceneSettings& second) {
 }
 
 std::span<const Named<Integrator>> integrator_names() {
-  static constexpr Named<Integrator> names[] = {
-      {Integrator::path, "path"}, {Integrator::direct, "direct"}, {Integrator::ambient_occlusion, "ambient-occlusion"}};
+  static constexpr Named<Integrator> names[] = {{Integrator::path, "path"},
+                                                {Integrator::direct, "direct"},
+                                                {Integrator::ambient_occlusion, "ambient-occlusion"},
+                                                {Integrator::metropolis, "metropolis"}};
   return names;
 }
 

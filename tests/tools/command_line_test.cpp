@@ -56,7 +56,7 @@ TEST_CASE("every command explains itself and all its options") {
        "Examples" +
            image},
       {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},
-      {"study", "sampling Exit"},
+      {"study", "sampling markov metropolis Exit"},
       {"matrix", "SCENE --device --json Exit Example" + image + thresholds},
       {"suite", "FILE --out --fresh --json --junit --threads --validation Exit Examples"}};
   const Outcome overview = run_tandem("--help");
@@ -126,6 +126,10 @@ TEST_CASE("a bad command line is one sentence, exit code 2, and leaves no file")
       {{"render", box, "-o", "x.png", "--camera-target", "1,2,inf"}, "--camera-target: '1,2,inf' is not three numbers"},
       {{"render", box, "-o", "x.png", "--background", "-1,0,0"}, "that are at least 0"},
       {{"render", box, "-o", "x.png", "--camera-position", "1,1,1", "--camera-target", "1,1,1"}, "camera"},
+      {{"render", box, "-o", "x.png", "--integrator", "metropolis", "--sampler", "sobol"}, "sampler sobol"},
+      {{"explain", box, "--pixel", "1,1", "--a", "cpu", "--b", "cpu", "--integrator", "metropolis"}, "no paths"},
+      {{"diff", box, "--a", "cpu", "--b", "cpu", "--classify", "--integrator", "metropolis"}, "no paths"},
+      {{"study", "metropolis", box, "--integrator", "direct"}, "path and metropolis"},
       {{"render", box, "-o", "x.png", "--colour", "red"}, "--colour"},
       {{"render", box, box, "-o", "x.png"}, "not expected"},
       {{"render", box, "-o", "x.jpg"}, "x.jpg"},

@@ -65,7 +65,7 @@ int study_sampling(const Options& options) {
 }  // namespace
 
 void add_study_command(CLI::App& app, Action& action) {
-  CLI::App* const group = app.add_subcommand("study", "Measure the efficiency of the path tracer's methods");
+  CLI::App* const group = app.add_subcommand("study", "Measure the efficiency of Monte Carlo methods");
   group->require_subcommand(1);
   CLI::App* const command = group->add_subcommand(
       "sampling", "Error, variance, time and order of convergence of every sampler and integrator option");
@@ -88,6 +88,8 @@ void add_study_command(CLI::App& app, Action& action) {
       "Example:\n"
       "  tandem study sampling --device cpu --markdown sampling.md");
   command->callback([&action, options] { action = [options] { return study_sampling(*options); }; });
+  add_study_markov_command(*group, action);
+  add_study_metropolis_command(*group, action);
 }
 
 }  // namespace tandem::tools

@@ -65,7 +65,7 @@ void add_render_options(CLI::App& command, RenderOptions& options) {
   add_named(
       method, "--integrator", settings.integrator, pathtracer::integrator_names(),
       "path: full path tracing; direct: emitters and direct light only; ambient-occlusion: fraction of the hemisphere "
-      "that is unoccluded [path]");
+      "that is unoccluded; metropolis: path tracing with Metropolis mutations, for light that is hard to find [path]");
   add_named(method, "--sampler", settings.sampler, pathtracer::sampler_names(),
             "Generator of the sample points [independent]");
   add_switch(method, "--nee", settings.light_sampling, "Next event estimation: sample a light at every vertex [on]");

@@ -44,6 +44,13 @@ TEST_CASE("The shaders are precompiled for all tasks and sets of features that a
   }
 }
 
+TEST_CASE("The shader of Metropolis light transport is precompiled for scenes without features and ray queries") {
+  const test::EnvironmentVariable compiler("TANDEM_CXX", "/nonexistent");
+  const test::ScratchFolder cache;
+  const rhi::DeviceHandle device = create_device({.name = "cpu", .kernel_cache = cache.path()});
+  CHECK_NOTHROW(PathTraceProgram(*device, TracingMode::query, 0, PathTraceTask::metropolis));
+}
+
 TEST_CASE("A set of features that is not built would need a compiler") {
   const test::EnvironmentVariable compiler("TANDEM_CXX", "/nonexistent");
   const test::ScratchFolder cache;

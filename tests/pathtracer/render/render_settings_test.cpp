@@ -46,10 +46,20 @@ TEST_CASE("Settings out of range are errors that say which") {
   CHECK(error_of({.clamp_direct = -1}).find("direct") != std::string::npos);
   CHECK(error_of({.clamp_indirect = std::numeric_limits<float>::infinity()}).find("indirect") != std::string::npos);
   CHECK(error_of({.occlusion_length = 0}).find("occlusion") != std::string::npos);
+  const auto metropolis_error = [](const MetropolisSettings& metropolis, SamplerKind sampler) {
+    return error_of({.integrator = Integrator::metropolis, .metropolis = metropolis, .sampler = sampler});
+  };
+  constexpr SamplerKind usual = SamplerKind::independent;
+  CHECK(metropolis_error({}, usual) == "no error");
+  CHECK(metropolis_error({}, SamplerKind::sobol).find("sobol") != std::string::npos);
+  CHECK(metropolis_error({.chains = 0}, usual).find("chains") != std::string::npos);
+  CHECK(metropolis_error({.bootstrap_paths = 3}, usual).find("bootstrap") != std::string::npos);
+  CHECK(metropolis_error({.large_step = 0}, usual).find("large steps") != std::string::npos);
 }
 
 TEST_CASE("Usual settings need no feature; every other one does") {
   CHECK(features_of(RenderSettings()) == 0);
+  CHECK(features_of(RenderSettings{.integrator = Integrator::metropolis}) == 0);
   CHECK(features_of(RenderSettings{.sampler = SamplerKind::halton}) == feature::samplers);
   for (const RenderSettings& settings :
        {RenderSettings{.integrator = Integrator::direct}, RenderSettings{.light_sampling = false},
