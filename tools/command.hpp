@@ -43,6 +43,8 @@ void add_gallery_command(CLI::App& app, Action& action);
 void add_bench_command(CLI::App& app, Action& action);
 void add_conformance_command(CLI::App& app, Action& action);
 void add_study_command(CLI::App& app, Action& action);
+/// A subcommand of `study`.
+void add_study_denoising_command(CLI::App& study, Action& action);
 void add_matrix_command(CLI::App& app, Action& action);
 void add_suite_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);

@@ -88,6 +88,7 @@ void add_study_command(CLI::App& app, Action& action) {
       "Example:\n"
       "  tandem study sampling --device cpu --markdown sampling.md");
   command->callback([&action, options] { action = [options] { return study_sampling(*options); }; });
+  add_study_denoising_command(*group, action);
 }
 
 }  // namespace tandem::tools
