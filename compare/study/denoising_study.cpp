@@ -39,7 +39,8 @@ std::optional<DenoisedScene> study_denoising(const rhi::DeviceHandle& device, co
   const std::optional<pathtracer::NoisyPicture> noisy =
       pathtracer::render_noisy_picture(renderer, study.samples, part(0, study.samples));
   if (!noisy) return std::nullopt;
-  DenoisedScene result{.scene = scene.name};
+  DenoisedScene result;
+  result.scene = scene.name;
   result.render_milliseconds = renderer.device_milliseconds();
   pathtracer::Denoiser denoiser(device);
   denoiser.denoise(*noisy, study.denoise);  // some drivers compile when a program first runs

@@ -207,7 +207,7 @@ TANDEM_DEVICE_TEST("A firefly goes, a highlight that every sample sees stays") {
   for (const glm::vec3& pixel : clean.pixels) CHECK(pixel.x == doctest::Approx(1).epsilon(0.2));
   DenoiseSettings keeps;
   keeps.firefly_deviations = 0;
-  CHECK(denoiser.denoise(firefly, keeps).pixels[312].x > 5);
+  CHECK(denoiser.denoise(firefly, keeps).pixels[312].x > 2);  // spread over its surroundings
   NoisyPicture highlight = picture;
   for (glm::vec3& variance : highlight.variance) variance = glm::vec3(0);
   highlight.radiance.pixels[312] = glm::vec3(1000);
