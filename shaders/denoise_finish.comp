@@ -1,4 +1,4 @@
-// The last pass of the denoiser: multiplies what was filtered with the albedo.
+// The last pass of the denoiser: multiplies what was filtered with the albedo and adds what is emitted.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -14,7 +14,7 @@ void main() {
   uvec2 position = gl_GlobalInvocationID.xy;
   if (any(greaterThanEqual(position, denoise.resolution))) return;
   uint index = position.y * denoise.resolution.x + position.x;
-  precise vec3 color = signal[index].xyz * demodulator(pixels[index]);
+  precise vec3 color = signal[index].xyz * demodulator(pixels[index].albedo) + pixels[index].emission;
   picture[3 * index] = color.x;
   picture[3 * index + 1] = color.y;
   picture[3 * index + 2] = color.z;

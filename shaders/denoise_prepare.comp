@@ -1,4 +1,4 @@
-// The first pass of the denoiser: divides radiance by albedo, pulls fireflies down and makes the guides.
+// The first pass of the denoiser: divides reflected radiance by albedo, pulls fireflies down and makes the guides.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
@@ -9,20 +9,20 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 0, binding = 0, std430) readonly buffer Pixels { DenoisePixel pixels[]; };
 layout(set = 0, binding = 1, std430) writeonly buffer Guides { DenoiseGuide guides[]; };
-// Radiance over albedo, and the variance of its luminance: below 0 for a pixel that holds no numbers.
+// Radiance over albedo, and the variance of its luminance: below 0 for a pixel that tells nothing.
 layout(set = 0, binding = 2, std430) writeonly buffer Signal { vec4 signal[]; };
 
 const int FIREFLY_RADIUS = 3;
 
 precise vec3 demodulated(DenoisePixel pixel) {
-  vec3 white = demodulator(pixel);
+  vec3 white = demodulator(pixel.sampled_albedo);
   return vec3(det_div(pixel.radiance.x, white.x), det_div(pixel.radiance.y, white.y),
               det_div(pixel.radiance.z, white.z));
 }
 
 /// Of the luminance of the demodulated radiance, as if its channels were noisy together, which they mostly are.
 precise float demodulated_variance(DenoisePixel pixel) {
-  vec3 white = demodulator(pixel);
+  vec3 white = demodulator(pixel.sampled_albedo);
   vec3 variance = max(pixel.variance, vec3(0.0));
   vec3 error = vec3(det_div(det_sqrt(variance.x), white.x), det_div(det_sqrt(variance.y), white.y),
                     det_div(det_sqrt(variance.z), white.z));
@@ -74,7 +74,7 @@ void main() {
   guide.reserved_1 = 0.0;
   guides[index] = guide;
 
-  if (!denoise_is_finite(pixel)) {
+  if (!denoise_is_known(pixel)) {
     signal[index] = vec4(0.0, 0.0, 0.0, -1.0);
     return;
   }
@@ -88,7 +88,7 @@ void main() {
         ivec2 other = position + ivec2(x, y);
         if ((x == 0 && y == 0) || !is_inside(other)) continue;
         DenoisePixel neighbour = pixels[index_of(other)];
-        if (!denoise_is_finite(neighbour)) continue;
+        if (!denoise_is_known(neighbour)) continue;
         precise float luminance = denoise_luminance(demodulated(neighbour));
         sum += luminance;
         squares += luminance * luminance;
@@ -106,7 +106,7 @@ void main() {
   }
   precise float luminance = denoise_luminance(color);
   precise float kept = without_firefly(luminance, variance, sum, squares, count);
-  precise float factor = kept < luminance ? det_div(kept, luminance) : 1.0;
+  precise float factor = kept < luminance && luminance > 0.0 ? det_div(kept > 0.0 ? kept : 0.0, luminance) : 1.0;
   precise vec3 result = color * factor;
   precise float left = variance * factor * factor;
   signal[index] = vec4(result, left);

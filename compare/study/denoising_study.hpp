@@ -31,10 +31,10 @@ struct PictureError {
 struct DenoisedScene {
   std::string scene;
   PictureError noisy;
-  PictureError denoised; ///< denoised, fireflies pulled down as the settings say
-  PictureError with_fireflies;///< denoised without pulling any down
-  double render_milliseconds = 0;       ///< of the noisy picture, on the device
-  double denoise_milliseconds = 0;      ///< by the host's clock
+  PictureError denoised;            ///< denoised, fireflies pulled down as the settings say
+  PictureError with_fireflies;      ///< denoised without pulling any down
+  double render_milliseconds = 0;   ///< of the noisy picture, on the device
+  double denoise_milliseconds = 0;  ///< by the host's clock
 };
 
 /// The error of a picture. Throws as compare::measure.

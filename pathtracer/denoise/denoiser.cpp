@@ -25,12 +25,16 @@ struct GpuPixel {
   float depth;
   glm::vec3 variance;
   float coverage;
-  glm::vec3 albedo;
+  glm::vec3 sampled_albedo;
   float reserved_0;
-  glm::vec3 normal;
+  glm::vec3 albedo;
   float reserved_1;
+  glm::vec3 emission;
+  float reserved_2;
+  glm::vec3 normal;
+  float reserved_3;
 };
-static_assert(sizeof(GpuPixel) == 64);
+static_assert(sizeof(GpuPixel) == 96);
 
 /// DenoiseConstants of the same.
 struct GpuConstants {
@@ -53,15 +57,21 @@ bool is_finite(const glm::vec3& v) { return std::isfinite(v.x) && std::isfinite(
 
 /// Guides that are no numbers guide nothing.
 GpuPixel gpu_pixel(const NoisyPicture& picture, std::size_t i) {
-  GpuPixel pixel{.radiance = picture.radiance.pixels[i],
+  GpuPixel pixel{.radiance = picture.radiance.pixels[i] - picture.sampled_emission[i],
                  .depth = picture.depth[i],
                  .variance = picture.variance[i],
                  .coverage = picture.coverage[i],
-                 .albedo = picture.albedo[i],
+                 .sampled_albedo = picture.sampled_albedo[i],
                  .reserved_0 = 0,
+                 .albedo = picture.albedo[i],
+                 .reserved_1 = 0,
+                 .emission = picture.emission[i],
+                 .reserved_2 = 0,
                  .normal = picture.normal[i],
-                 .reserved_1 = 0};
+                 .reserved_3 = 0};
   if (!is_finite(pixel.albedo)) pixel.albedo = glm::vec3(0);
+  if (!is_finite(pixel.sampled_albedo)) pixel.sampled_albedo = glm::vec3(0);
+  if (!is_finite(pixel.emission)) pixel.emission = glm::vec3(0);
   if (!is_finite(pixel.normal)) pixel.normal = glm::vec3(0);
   if (!is_finite(pixel.variance)) pixel.variance = glm::vec3(-1);
   if (!std::isfinite(pixel.depth)) pixel.depth = 0;
@@ -72,7 +82,8 @@ GpuPixel gpu_pixel(const NoisyPicture& picture, std::size_t i) {
 void check_planes(const NoisyPicture& picture) {
   const std::size_t pixels = std::size_t{picture.radiance.width} * picture.radiance.height;
   if (pixels == 0) throw Error("a picture without pixels cannot be denoised");
-  for (const std::size_t size : {picture.radiance.pixels.size(), picture.variance.size(), picture.albedo.size(),
+  for (const std::size_t size : {picture.radiance.pixels.size(), picture.variance.size(), picture.sampled_albedo.size(),
+                                 picture.sampled_emission.size(), picture.albedo.size(), picture.emission.size(),
                                  picture.normal.size(), picture.depth.size(), picture.coverage.size()})
     if (size != pixels)
       throw Error(fmt::format("the planes of a picture to denoise have {} and {} pixels", pixels, size));
@@ -101,8 +112,7 @@ void record_pass(rhi::Device& device, rhi::CommandList& list, const rhi::Compute
 void check(const DenoiseSettings& settings) {
   if (settings.levels > most_levels)
     throw Error(fmt::format("a denoiser has at most {} levels, not {}", most_levels, settings.levels));
-  for (const float width :
-       {settings.luminance_deviations, settings.depth_slopes, settings.albedo_difference})
+  for (const float width : {settings.luminance_deviations, settings.depth_slopes, settings.albedo_difference})
     if (!(width >= 1e-6f && width <= 1e6f))
       throw Error(fmt::format("{} is no width of a denoiser's weights: they are from 1e-6 to 1e6", width));
   if (!(settings.firefly_deviations >= 0 && settings.firefly_deviations <= 1e6f))

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <limits>
 #include <string_view>
 
 #include <glm/geometric.hpp>
@@ -79,10 +80,16 @@ std::optional<NoisyPicture> render_noisy_picture(Renderer& renderer, std::uint32
     if (!renderer.render(count, part)) return std::nullopt;
     spread.add(renderer.image(), count);
   }
-  const std::vector<ImageChannel> hits = first_hits(renderer.scene(), samples);
+  if (samples > std::numeric_limits<std::uint32_t>::max() / guide_samples_per_sample)
+    throw Error("these are too many samples to denoise");
+  const std::vector<ImageChannel> sampled = first_hits(renderer.scene(), samples);
+  const std::vector<ImageChannel> hits = first_hits(renderer.scene(), guide_samples_per_sample * samples);
   return NoisyPicture{.radiance = renderer.image(),
                       .variance = spread.variance_of_mean(),
+                      .sampled_albedo = planes(sampled, "albedo.R", "albedo.G", "albedo.B"),
+                      .sampled_emission = planes(sampled, "emission.R", "emission.G", "emission.B"),
                       .albedo = planes(hits, "albedo.R", "albedo.G", "albedo.B"),
+                      .emission = planes(hits, "emission.R", "emission.G", "emission.B"),
                       .normal = planes(hits, "normal.X", "normal.Y", "normal.Z"),
                       .depth = plane(hits, "depth.Z"),
                       .coverage = plane(hits, "coverage.Y")};

@@ -15,13 +15,22 @@ struct NoisyPicture {
   Image radiance;  ///< mean of the samples
   /// Of that mean, channel by channel; below 0 where it is unknown.
   std::vector<glm::vec3> variance;
-  std::vector<glm::vec3> albedo;  ///< mean of the first hits, 0 for samples that hit nothing
+  /// Of the first hits of the picture's samples: mean albedo, 0 for samples that hit nothing, and emission, which is
+  /// that of the background for these.
+  std::vector<glm::vec3> sampled_albedo, sampled_emission;
+  /// The same and the guides below of more first hits than samples, or of the same: what an edge shows comes from
+  /// these.
+  std::vector<glm::vec3> albedo, emission;
   std::vector<glm::vec3> normal;  ///< mean of the first hits, in world space, of any length
   std::vector<float> depth;       ///< mean distance of the first hits
   std::vector<float> coverage;    ///< fraction of the samples that hit anything
 };
 
-/// Renders `samples` (at least 1) into an empty picture and looks at the first hits of as many.
+/// First hits that render_noisy_picture looks at for each sample: a path costs many times as much.
+inline constexpr std::uint32_t guide_samples_per_sample = 16;
+
+/// Renders `samples` (at least 1) into an empty picture and looks at the first hits of as many, and of
+/// `guide_samples_per_sample` times as many.
 ///
 /// The variance is that of the means of up to 16 batches of samples, over their number: the samples are taken a batch
 /// at a time, which changes no bit of the picture. With less than two samples it is unknown. Samples of a sequence

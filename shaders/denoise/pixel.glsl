@@ -6,14 +6,18 @@
 #include "math.glsl"
 
 struct DenoisePixel {
-  vec3 radiance;   // mean of the samples
+  vec3 radiance;   // mean of the samples, less what their first hits emit
   float depth;     // mean distance of the first hits
   vec3 variance;   // of that mean, by channel; below 0 where it is unknown
   float coverage;  // fraction of the samples that hit anything
-  vec3 albedo;     // mean of the first hits, 0 for samples that hit nothing
+  vec3 sampled_albedo;  // mean of the first hits of these samples, 0 for those that hit nothing
   float reserved_0;
-  vec3 normal;  // mean of the first hits
+  vec3 albedo;  // the same of more first hits, and so all below
   float reserved_1;
+  vec3 emission;
+  float reserved_2;
+  vec3 normal;
+  float reserved_3;
 };
 
 // How alike pixels must be is in units of these.
@@ -34,17 +38,16 @@ const float LARGEST_RADIANCE = 1e15;
 
 precise float denoise_luminance(vec3 color) { return (0.2126 * color.x + 0.7152 * color.y) + 0.0722 * color.z; }
 
-/// Radiance is divided by this before it is filtered and multiplied with it afterwards, so that textures are not
-/// filtered. What lies behind everything counts as white; the floor keeps noise on black surfaces small.
-precise vec3 demodulator(DenoisePixel pixel) {
-  vec3 white = vec3(1.0 - pixel.coverage);
-  return max(pixel.albedo + white, vec3(0.02));
-}
+/// Reflected radiance is divided by this before it is filtered, so that neither textures nor the share of a pixel that
+/// an edge leaves are filtered. The floor keeps noise on black surfaces small.
+vec3 demodulator(vec3 albedo) { return max(albedo, vec3(0.01)); }
 
-/// Whether the pixel holds numbers that a filter may use: no NaN, no infinity.
-bool denoise_is_finite(DenoisePixel pixel) {
+/// Whether the pixel tells how bright its surface is: it holds no NaN and no infinity, and a sample at least has met what
+/// more first hits say is there.
+bool denoise_is_known(DenoisePixel pixel) {
   vec3 size = abs(pixel.radiance);
-  return size.x <= LARGEST_RADIANCE && size.y <= LARGEST_RADIANCE && size.z <= LARGEST_RADIANCE;
+  bool is_finite = size.x <= LARGEST_RADIANCE && size.y <= LARGEST_RADIANCE && size.z <= LARGEST_RADIANCE;
+  return is_finite && !(max_component(pixel.sampled_albedo) < 0.01 && max_component(pixel.albedo) > 0.02);
 }
 
 #endif

@@ -34,7 +34,8 @@ TEST_CASE("every command explains itself and all its options") {
   const std::string thresholds = " --tier --min-within-1e3 --min-bit-equal --max-mean-difference --max-non-finite";
   const std::map<std::string, std::string> options = {
       {"devices", "--json"},
-      {"render", "SCENE --output --device --denoise --denoise-levels --denoise-strength --denoise-fireflies Examples" + image},
+      {"render",
+       "SCENE --output --device --denoise --denoise-levels --denoise-strength --denoise-fireflies Examples" + image},
       {"diff",
        "SCENE --a --b --json --junit --out --report --baseline --metrics --classify --classify-pixels --survey "
        "--arbiter "

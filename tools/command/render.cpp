@@ -115,9 +115,8 @@ int render_image(const Options& options) {
     print_warnings({fmt::format("{} of {} pixels are not finite numbers (NaN or infinity)", pixels - finite, pixels)});
   if (noisy) {
     rendering.image = pathtracer::Denoiser(device).denoise(*noisy, denoise);
-    rendering.metadata["denoiser"] =
-        fmt::format("levels {} strength {} fireflies {}", denoise.levels, denoise.luminance_deviations,
-                    denoise.firefly_deviations);
+    rendering.metadata["denoiser"] = fmt::format("levels {} strength {} fireflies {}", denoise.levels,
+                                                 denoise.luminance_deviations, denoise.firefly_deviations);
   }
   if (options.output.extension() == ".png") note_clipping(rendering.image, options.tone);
   std::vector<pathtracer::ImageChannel> layers;
@@ -149,8 +148,9 @@ void add_render_command(CLI::App& app, Action& action) {
   command->add_option("-o,--output", options->output, "Image file: .exr (linear, 32-bit float) or .png (8 bits)")
       ->required()
       ->type_name("FILE");
-  command->add_flag("--aovs,--layers", options->layers,
-                    "Add first-hit AOVs to the .exr: albedo, normal, depth, coverage, primitive and material ids");
+  command->add_flag(
+      "--aovs,--layers", options->layers,
+      "Add first-hit AOVs to the .exr: albedo, emission, normal, depth, coverage, primitive and material ids");
   command->add_flag("--denoise", options->denoises,
                     "Filter noise out of the picture; an .exr keeps what it was as layer 'noisy', with its variance");
   add_whole_number(*command, "--denoise-levels", options->denoise_levels, 0, 10,

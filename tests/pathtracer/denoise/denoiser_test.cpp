@@ -22,7 +22,10 @@ NoisyPicture flat_picture(std::uint32_t width, std::uint32_t height, float radia
   const std::size_t pixels = std::size_t{width} * height;
   return {.radiance = {width, height, std::vector<glm::vec3>(pixels, glm::vec3(radiance))},
           .variance = std::vector<glm::vec3>(pixels, glm::vec3(variance)),
+          .sampled_albedo = std::vector<glm::vec3>(pixels, glm::vec3(1)),
+          .sampled_emission = std::vector<glm::vec3>(pixels, glm::vec3(0)),
           .albedo = std::vector<glm::vec3>(pixels, glm::vec3(1)),
+          .emission = std::vector<glm::vec3>(pixels, glm::vec3(0)),
           .normal = std::vector<glm::vec3>(pixels, glm::vec3(0, 0, 1)),
           .depth = std::vector<float>(pixels, 10),
           .coverage = std::vector<float>(pixels, 1)};
@@ -77,11 +80,12 @@ NoisyPicture crowded_picture() {
     for (std::uint32_t x = 0; x < 37; ++x) {
       const std::size_t i = y * 37 + x;
       if (x > 12) picture.normal[i] = {0.6f, 0.1f * static_cast<float>(y), 0.8f};
-      if (x > 20) picture.albedo[i] = {0.7f, 0.2f + 0.01f * static_cast<float>(x), 0.05f};
+      if (x > 20) picture.sampled_albedo[i] = picture.albedo[i] = {0.7f, 0.2f + 0.01f * static_cast<float>(x), 0.05f};
       picture.depth[i] = 5 + 0.13f * static_cast<float>(x) + (y > 11 ? 3.0f : 0.0f);
       if (x + y < 9) {
         picture.coverage[i] = 0;
-        picture.albedo[i] = picture.normal[i] = glm::vec3(0);
+        picture.sampled_albedo[i] = picture.albedo[i] = picture.normal[i] = glm::vec3(0);
+        picture.sampled_emission[i] = picture.emission[i] = {0.1f, 0.2f, 0.9f};
         picture.depth[i] = 0;
       }
     }
@@ -102,6 +106,7 @@ TANDEM_DEVICE_TEST("A picture without differences stays as it is") {
   CHECK(same_bits(denoiser.denoise(picture), picture.radiance));
   // Division by albedo and the product with it round once each.
   for (glm::vec3& albedo : picture.albedo) albedo = {0.3f, 0.6f, 0.9f};
+  picture.sampled_albedo = picture.albedo;
   for (const glm::vec3& pixel : denoiser.denoise(picture).pixels)
     for (int c = 0; c < 3; ++c) CHECK(pixel[c] == doctest::Approx(0.7f).epsilon(3e-7));
 }
@@ -121,8 +126,8 @@ TANDEM_DEVICE_TEST("Noise falls as the weights of the kernel say, and the mean s
   Denoiser denoiser(device_handle);
   NoisyPicture picture = flat_picture(96, 96, 10, 0);
   add_noise(picture, 1);
-  // The sum of the squares of the kernel: (0.375^2 + 2 * 0.25^2 + 2 * 0.0625^2)^2. The pixels' values are correlated over
-  // 5 x 5: 92^2 / 25 independent ones at least tell a variance within 8 % (one deviation).
+  // The sum of the squares of the kernel: (0.375^2 + 2 * 0.25^2 + 2 * 0.0625^2)^2. The pixels' values are correlated
+  // over 5 x 5: 92^2 / 25 independent ones at least tell a variance within 8 % (one deviation).
   const Moments one_level = moments(denoiser.denoise(picture, linear_filter(1)), 2);
   CHECK(one_level.variance == doctest::Approx(0.0747681).epsilon(0.2));
   CHECK(one_level.mean == doctest::Approx(10).epsilon(0.005));  // 4.6 deviations of 1 / 92
@@ -143,7 +148,7 @@ TANDEM_DEVICE_TEST("Edges of albedo, normal, depth and coverage survive") {
       for (std::uint32_t x = 16; x < 32; ++x) {
         const std::size_t i = y * 32 + x;
         picture.radiance.pixels[i] = glm::vec3(2);
-        if (guide[0] == 'a') picture.albedo[i] = glm::vec3(0.05f);
+        if (guide[0] == 'a') picture.sampled_albedo[i] = picture.albedo[i] = glm::vec3(0.05f);
         if (guide[0] == 'n') picture.normal[i] = {1, 0, 0};
         if (guide[0] == 'd') picture.depth[i] = 20;
         if (guide[0] == 'c') picture.coverage[i] = 0;
@@ -176,7 +181,7 @@ TANDEM_DEVICE_TEST("Textures stay, for they are no part of what is filtered") {
   add_noise(picture, 0.2f);
   for (std::size_t i = 0; i < picture.albedo.size(); ++i) {
     const float albedo = (i % 32 / 2 + i / 64) % 2 == 0 ? 0.3f : 0.45f;
-    picture.albedo[i] = glm::vec3(albedo);
+    picture.sampled_albedo[i] = picture.albedo[i] = glm::vec3(albedo);
     picture.radiance.pixels[i] *= albedo;
     picture.variance[i] *= albedo * albedo;
   }
@@ -185,6 +190,25 @@ TANDEM_DEVICE_TEST("Textures stay, for they are no part of what is filtered") {
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     worst = std::max(worst, std::abs(double{image.pixels[i].x} / picture.albedo[i].x - 1));
   CHECK(worst < 0.15);  // of noise of 0.2 for one deviation
+}
+
+TANDEM_DEVICE_TEST("An edge shows what many first hits say, whatever the few samples met") {
+  Denoiser denoiser(device_handle);
+  NoisyPicture picture = flat_picture(9, 9, 0, 0);
+  std::mt19937 random(3);
+  for (std::size_t i = 0; i < picture.radiance.pixels.size(); ++i) {
+    // A lamp of radiance 20 over a part of the pixel, a surface of albedo 0.5 in light of 2 over the rest.
+    const float share = static_cast<float>(random() % 17) / 16;
+    picture.sampled_emission[i] = glm::vec3(20 * share);
+    picture.sampled_albedo[i] = glm::vec3(0.5f * (1 - share));
+    picture.radiance.pixels[i] = glm::vec3(20 * share + 2 * 0.5f * (1 - share));
+    picture.emission[i] = glm::vec3(20 * 0.25f);
+    picture.albedo[i] = glm::vec3(0.5f * 0.75f);
+  }
+  DenoiseSettings settings;
+  settings.luminance_deviations = 1e6f;  // a pixel that shows the lamp alone knows nothing of the light on the surface
+  for (const glm::vec3& pixel : denoiser.denoise(picture, settings).pixels)
+    CHECK(pixel.x == doctest::Approx(20 * 0.25 + 2 * 0.5 * 0.75).epsilon(0.03));
 }
 
 TANDEM_DEVICE_TEST("Noise-free differences of brightness survive without any guide") {
@@ -222,7 +246,7 @@ TANDEM_DEVICE_TEST("A pixel that is no number is filled in, and does not spread"
     NoisyPicture picture = flat_picture(19, 19, 3, 0.5f);
     picture.radiance.pixels[180] = {3, bad, 3};
     picture.variance[180] = glm::vec3(bad);
-    picture.albedo[40] = picture.normal[60] = glm::vec3(bad);
+    picture.sampled_albedo[40] = picture.albedo[40] = picture.normal[60] = glm::vec3(bad);
     picture.depth[80] = bad;
     const Image image = denoiser.denoise(picture);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
