@@ -53,7 +53,7 @@ TEST_CASE("every command explains itself and all its options") {
       {"gallery", "LIST --out --device --only --size --spp --threads Exit Examples"},
       {"bench", "SCENE --kernels --device --repeat --json Exit Examples" + image},
       {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},
-      {"study", "sampling Exit"},
+      {"study", "sampling denoising Exit"},
       {"matrix", "SCENE --device --json Exit Example" + image + thresholds},
       {"suite", "FILE --out --fresh --json --junit --threads --validation Exit Examples"}};
   const Outcome overview = run_tandem("--help");
