@@ -10,7 +10,7 @@ namespace tandem::pathtracer {
 
 struct DenoiseSettings {
   std::uint32_t levels = 5;        ///< 0 to 10: the last one looks 2^levels pixels far
-  float luminance_deviations = 4;  ///< differences of luminance that count as noise, in standard errors; above 0
+  float luminance_deviations = 3;  ///< differences of luminance that count as noise, in standard errors; above 0
   float depth_slopes = 1;          ///< differences of depth that count as one surface, in its slope; above 0
   float albedo_difference = 0.3f;  ///< that counts as one material; above 0
   /// A pixel is a firefly this many standard deviations above the mean of the 48 pixels around it; 0: no pixel is.

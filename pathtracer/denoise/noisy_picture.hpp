@@ -27,7 +27,7 @@ struct NoisyPicture {
 };
 
 /// First hits that render_noisy_picture looks at for each sample: a path costs many times as much.
-inline constexpr std::uint32_t guide_samples_per_sample = 16;
+inline constexpr std::uint32_t guide_samples_per_sample = 32;
 
 /// Renders `samples` (at least 1) into an empty picture and looks at the first hits of as many, and of
 /// `guide_samples_per_sample` times as many.

@@ -156,7 +156,7 @@ void add_render_command(CLI::App& app, Action& action) {
   add_whole_number(*command, "--denoise-levels", options->denoise_levels, 0, 10,
                    "Levels of the filter: the last one looks 2^N pixels far (default 5)");
   add_number(*command, "--denoise-strength", options->denoise_strength, 0.01, 1000,
-             "Standard errors of a pixel that count as noise (default 4)");
+             "Standard errors of a pixel that count as noise (default 3)");
   add_number(*command, "--denoise-fireflies", options->denoise_fireflies, 0, 1e6,
              "Standard deviations above its neighbourhood that make a pixel a firefly (default 2); 0: none is");
   add_tone_options(*command, options->tone);

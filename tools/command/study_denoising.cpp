@@ -23,7 +23,7 @@ namespace tandem::tools {
 namespace {
 
 struct Options {
-  std::vector<std::filesystem::path> scenes;  ///< empty: the shipped four
+  std::vector<std::filesystem::path> scenes;  ///< empty: the shipped ones
   std::string device = "cpu";
   std::uint32_t threads = 0;
   study::DenoisingSettings settings;
@@ -31,9 +31,9 @@ struct Options {
   std::filesystem::path markdown;  ///< likewise
 };
 
-/// Diffuse, textured, glossy and specular, by lights of area and by an environment.
-constexpr const char* shipped[] = {"cornell_box.obj", "cornell_spheres.obj", "material_row.json",
-                                   "still_life_outdoors.json"};
+/// Diffuse boxes, and where the filter has less to go by: mirrors and glass, fine textures.
+constexpr const char* shipped[] = {"cornell_box.obj",    "cornell_box_white.json", "cornell_box_saturated.json",
+                                   "cornell_blocks.obj", "cornell_spheres.obj",    "still_life_outdoors.json"};
 
 int study_denoising(const Options& options) {
   for (const std::filesystem::path& path : {options.json, options.markdown})
@@ -73,8 +73,7 @@ void add_study_denoising_command(CLI::App& study, Action& action) {
   CLI::App* const command =
       study.add_subcommand("denoising", "Error of noisy and of denoised pictures against pictures of many samples");
   const auto options = std::make_shared<Options>();
-  command->add_option("SCENE", options->scenes, "Scene files; without any, four of the shipped ones")
-      ->type_name("FILE");
+  command->add_option("SCENE", options->scenes, "Scene files; without any, six of the shipped ones")->type_name("FILE");
   add_device(*command, options->device, "Device to render on, as listed by 'tandem devices'",
              "run the study once for each");
   add_whole_number(*command, "--threads", options->threads, 0, 4096,
