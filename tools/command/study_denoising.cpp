@@ -11,6 +11,7 @@
 #include "pathtracer/load/scene_loader.hpp"
 #include "tools/command.hpp"
 #include "tools/options/device_options.hpp"
+#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
 #include "tools/options/shipped_file.hpp"
 #include "tools/output/interruption.hpp"
