@@ -19,6 +19,7 @@
 #include "tools/output/print.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/denoising_report.hpp"
+#include "tools/report/device_json.hpp"
 
 namespace tandem::tools {
 namespace {
