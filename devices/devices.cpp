@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "denoise_shaders/kernels.hpp"
 #include "metropolis_shaders/kernels.hpp"
 #include "probe_shaders/kernels.hpp"
 #include "rhi_cpu/device.hpp"
@@ -32,7 +33,8 @@ rhi::DeviceHandle create_device(const rhi::DeviceDesc& desc) {
   if (cpu::is_device_name(name)) {
     std::vector<cpu::PrecompiledKernel> kernels;
     for (const std::span<const cpu::PrecompiledKernel> some :
-         {shaders::kernels(), probe_shaders::kernels(), study_shaders::kernels(), metropolis_shaders::kernels()})
+         {shaders::kernels(), probe_shaders::kernels(), denoise_shaders::kernels(), study_shaders::kernels(),
+          metropolis_shaders::kernels()})
       kernels.insert(kernels.end(), some.begin(), some.end());
     return cpu::create_device(desc, kernels);
   }

@@ -8,6 +8,8 @@
 #include "bsdf/parameters.glsl"
 #include "camera/camera.glsl"
 #include "geometry/surface.glsl"
+#include "light/emission.glsl"
+#include "light/environment.glsl"
 #include "scene.glsl"
 #include "trace.glsl"
 
@@ -21,6 +23,8 @@ struct FirstHit {
   uint material;   // likewise
   uint reserved_0;
   uint reserved_1;
+  vec3 emission;  // sum over all samples: of what is hit, or of what is behind everything
+  uint reserved_2;
 };
 
 layout(set = 1, binding = 2, std430) buffer FirstHits { FirstHit first_hits[]; };
@@ -40,10 +44,15 @@ void add_first_hit(uvec2 pixel, uint sample_index) {
     first_hits[index].depth = 0.0;
     first_hits[index].normal = vec3(0.0);
     first_hits[index].count = 0.0;
+    first_hits[index].emission = vec3(0.0);
     first_hits[index].primitive = primitive;
     first_hits[index].material = NO_PRIMITIVE;
   }
-  if (primitive == NO_PRIMITIVE) return;
+  if (primitive == NO_PRIMITIVE) {
+    precise vec3 beyond = first_hits[index].emission + environment_radiance(ray.direction);
+    first_hits[index].emission = beyond;
+    return;
+  }
   precise Surface surface = surface_at(primitive, ray.origin, ray.direction, time);
   BsdfParameters parameters =
       bsdf_parameters(surface.material, surface.outside, surface.texture_coordinates, surface.position, surface.tint);
@@ -52,6 +61,10 @@ void add_first_hit(uvec2 pixel, uint sample_index) {
   precise float depth = first_hits[index].depth + det_length(surface.position - ray.origin);
   precise vec3 normal = first_hits[index].normal + surface.shading_normal;
   precise float count = first_hits[index].count + 1.0;
+  precise vec3 emission =
+      first_hits[index].emission +
+      emitted_radiance(surface.material, surface.texture_coordinates, surface.position, surface.tint);
+  first_hits[index].emission = emission;
   first_hits[index].albedo = albedo;
   first_hits[index].depth = depth;
   first_hits[index].normal = normal;

@@ -47,6 +47,8 @@ void add_study_command(CLI::App& app, Action& action);
 void add_study_markov_command(CLI::App& group, Action& action);
 /// `study metropolis`, likewise.
 void add_study_metropolis_command(CLI::App& group, Action& action);
+/// A subcommand of `study`.
+void add_study_denoising_command(CLI::App& group, Action& action);
 void add_matrix_command(CLI::App& app, Action& action);
 void add_suite_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);

@@ -17,8 +17,10 @@ struct GpuFirstHit {
   std::uint32_t primitive;
   std::uint32_t material;
   std::uint32_t reserved[2];
+  glm::vec3 emission;
+  std::uint32_t reserved_2;
 };
-static_assert(sizeof(GpuFirstHit) == 48);
+static_assert(sizeof(GpuFirstHit) == 64);
 
 /// Samples of every pixel that one submission looks at.
 constexpr std::uint32_t batch = 4;
@@ -52,6 +54,7 @@ std::vector<ImageChannel> first_hits(SceneOnDevice& scene, std::uint32_t samples
   scene.device().download(buffer, 0, std::as_writable_bytes(std::span(hits)));
   for (GpuFirstHit& hit : hits) {
     hit.albedo /= static_cast<float>(samples);
+    hit.emission /= static_cast<float>(samples);
     if (hit.count == 0) continue;
     hit.normal /= hit.count;
     hit.depth /= hit.count;
@@ -59,6 +62,9 @@ std::vector<ImageChannel> first_hits(SceneOnDevice& scene, std::uint32_t samples
   return {float_channel("albedo.R", hits, [](const GpuFirstHit& hit) { return hit.albedo.x; }),
           float_channel("albedo.G", hits, [](const GpuFirstHit& hit) { return hit.albedo.y; }),
           float_channel("albedo.B", hits, [](const GpuFirstHit& hit) { return hit.albedo.z; }),
+          float_channel("emission.R", hits, [](const GpuFirstHit& hit) { return hit.emission.x; }),
+          float_channel("emission.G", hits, [](const GpuFirstHit& hit) { return hit.emission.y; }),
+          float_channel("emission.B", hits, [](const GpuFirstHit& hit) { return hit.emission.z; }),
           float_channel("normal.X", hits, [](const GpuFirstHit& hit) { return hit.normal.x; }),
           float_channel("normal.Y", hits, [](const GpuFirstHit& hit) { return hit.normal.y; }),
           float_channel("normal.Z", hits, [](const GpuFirstHit& hit) { return hit.normal.z; }),

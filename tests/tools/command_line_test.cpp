@@ -34,7 +34,8 @@ TEST_CASE("every command explains itself and all its options") {
   const std::string thresholds = " --tier --min-within-1e3 --min-bit-equal --max-mean-difference --max-non-finite";
   const std::map<std::string, std::string> options = {
       {"devices", "--json"},
-      {"render", "SCENE --output --device Examples" + image},
+      {"render",
+       "SCENE --output --device --denoise --denoise-levels --denoise-strength --denoise-fireflies Examples" + image},
       {"diff",
        "SCENE --a --b --json --junit --out --report --baseline --metrics --classify --classify-pixels --survey "
        "--arbiter "
@@ -56,7 +57,7 @@ TEST_CASE("every command explains itself and all its options") {
        "Examples" +
            image},
       {"conformance", "--device --require-devices --filter --list --full --json --markdown Exit"},
-      {"study", "sampling markov metropolis Exit"},
+      {"study", "sampling markov metropolis denoising Exit"},
       {"matrix", "SCENE --device --json Exit Example" + image + thresholds},
       {"suite", "FILE --out --fresh --json --junit --threads --validation Exit Examples"}};
   const Outcome overview = run_tandem("--help");

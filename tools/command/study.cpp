@@ -90,6 +90,7 @@ void add_study_command(CLI::App& app, Action& action) {
   command->callback([&action, options] { action = [options] { return study_sampling(*options); }; });
   add_study_markov_command(*group, action);
   add_study_metropolis_command(*group, action);
+  add_study_denoising_command(*group, action);
 }
 
 }  // namespace tandem::tools
