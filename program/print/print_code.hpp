@@ -9,7 +9,7 @@
 #include "program/print/print_format.hpp"
 
 /// Shaders that print by debugPrintfEXT (NonSemantic.DebugPrintf), rewritten so that every device prints the same: what
-/// is printed goes into a storage buffer, and is made text by the host (decision 30).
+/// is printed goes into a storage buffer, and is made text by the host (decision 27).
 ///
 /// The buffer, in words: the header (PrintHeader), then slots of header_slot_words words, one for each call that was
 /// executed: the number of the call + 1, the invocation (x, y, z), the words of the arguments. One slot more takes what

@@ -113,7 +113,8 @@ TEST_CASE("every command that a document names is a command") {
   for (const fs::directory_entry& entry : fs::directory_iterator(source_directory / "tools/command"))
     commands.insert(entry.path().stem().string());
   // Of other people's shaders, and commands below a command.
-  for (const char* form : {"diff_program", "explain_program", "study_markov", "study_metropolis"}) commands.erase(form);
+  for (const char* form : {"diff_program", "explain_program", "study_denoising", "study_markov", "study_metropolis"})
+    commands.erase(form);
   std::set<std::string> named;
   for (const Document& each : documents()) {
     std::vector<Span> code = code_spans(each);

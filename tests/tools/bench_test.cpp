@@ -131,10 +131,16 @@ Json stored(std::vector<double> times, const std::string& hash = "a") {
 TEST_CASE("slower is what is slower than before by more than it scatters") {
   const Json before = stored({10, 11, 10, 9, 10, 10});
   CHECK(speed_changes(before, stored({20, 21, 20, 19, 20, 20})).slower.size() == 1);
-  CHECK(speed_changes(before, stored({5, 5, 5, 5, 5, 5})).faster.size() == 1);
-  CHECK(speed_changes(before, stored({20, 9, 20, 19, 20, 20})).unchanged == 1);           // it scatters as much
-  CHECK(speed_changes(stored({10, 10, 10}), stored({10.2, 10.2, 10.2})).unchanged == 1);  // 2 % are within tolerance
-  CHECK(speed_changes(before, stored({20, 20, 20}, "b")).unmatched.size() == 1);
+  CHECK(speed_changes(before, stored({5, 5, 5, 5, 5})).faster.size() == 1);
+  CHECK(speed_changes(before, stored({20, 9, 20, 19, 20, 20})).unchanged == 1);  // it scatters as much
+  const Json steady = stored({10, 10, 10, 10, 10});
+  CHECK(speed_changes(steady, stored({10.2, 10.2, 10.2, 10.2, 10.2})).unchanged == 1);  // 2 % are within tolerance
+  CHECK_THROWS_AS(speed_changes(steady, stored({20, 20, 20, 20})), Error);              // too few
+  CHECK_THROWS_AS(speed_changes(steady, stored({20, 20, 20, 20, 20}, "b")), Error);     // nothing in common
+  Json both = steady;
+  both["runs"].push_back(stored({1, 1, 1, 1, 1}, "b")["runs"][0]);
+  CHECK(speed_changes(both, steady).gone.size() == 1);
+  CHECK(speed_changes(steady, both).unmatched.size() == 1);
   CHECK_THROWS_AS(speed_changes(Json{{"runs", 1}}, before), Error);
   CHECK_THROWS_AS(speed_changes(Json::array(), before), Error);
 }
@@ -204,7 +210,7 @@ TEST_CASE("a stored run is the baseline of the next, and a much slower one fails
   folder.write("fast.json", report.dump());
   const Outcome slower = bench({"--baseline", "fast.json"});
   CHECK(slower.exit_code == 1);
-  CHECK(slower.output.find("1 slower, 0 faster, 0 unchanged") != std::string::npos);
+  CHECK(slower.output.find("1 slower, 0 faster, 0 unchanged, 0 new, 0 gone") != std::string::npos);
   for (Json& time : report.at("runs").at(0).at("devices").at(0).at("ms_rounds")) time = 1e9;
   folder.write("slow.json", report.dump());
   CHECK(bench({"--baseline", "slow.json"}).exit_code == 0);
@@ -212,6 +218,22 @@ TEST_CASE("a stored run is the baseline of the next, and a much slower one fails
   const Outcome bad = bench({"--baseline", "no.json"});
   CHECK(bad.exit_code == 2);
   CHECK(bad.errors.find("no.json: it is not what 'tandem bench --json' writes") != std::string::npos);
+}
+
+TEST_CASE("a study of random walks is plotted beside N^-1/2") {
+  const ScratchFolder folder;
+  const Outcome outcome =
+      run_tandem({"study", "markov", "--walks", "256", "--html", "walks.html"}, {.folder = folder.path()});
+  REQUIRE(outcome.exit_code == 0);
+  const std::string page = read_text(folder.path() / "walks.html");
+  std::size_t plots = 0;
+  for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) {
+    ++plots;
+    const std::string plot = page.substr(at, page.find("</svg>", at) + 6 - at);
+    CHECK(pugi::xml_document().load_string(plot.c_str()));
+    CHECK(plot.find("N^-1/2") != std::string::npos);
+  }
+  CHECK(plots == 3);
 }
 
 TEST_CASE("an option that cannot vary is refused by its name") {

@@ -1,13 +1,16 @@
 #include "tools/bench/measurement.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <set>
 #include <tuple>
 
+#include "base/error.hpp"
 #include "compare/session/rendering.hpp"
 #include "pathtracer/render/path_recorder.hpp"
 #include "pathtracer/render/renderer.hpp"
@@ -98,7 +101,9 @@ void run_once(pathtracer::Renderer& renderer, const compare::Job& job, BenchSeri
 }
 
 /// Measures the configurations of one scene.
-void measure_scene(std::span<const Configuration> configurations, const MeasureOptions& options, BenchReport& report) {
+/// @param late devices whose first picture took too long; they are not tried again
+void measure_scene(std::span<const Configuration> configurations, const MeasureOptions& options,
+                   std::set<std::string>& late, BenchReport& report) {
   Renderers renderers;
   std::vector<compare::Job> jobs;
   std::vector<std::vector<pathtracer::Renderer*>> used;  // of each configuration, by device
@@ -109,14 +114,16 @@ void measure_scene(std::span<const Configuration> configurations, const MeasureO
     runs.push_back({.varied = configuration.varied, .job = summary(job), .series = {}});
     used.emplace_back();
     for (const std::string& device : options.devices) {
+      if (late.contains(device)) continue;
       std::optional<double> first;
       if (options.first_picture_limit) {
         const ShownStage stage(fmt::format("first picture on {}", device));
         first = first_picture(configuration, device, *options.first_picture_limit);
         if (!first) {
           report.left_out.push_back(fmt::format(
-              "{} on {}: no picture within {:.0f} s, which a driver's compiler may need once; it is not measured",
-              runs.back().job.scene, device, static_cast<double>(options.first_picture_limit->count()) / 1000));
+              "{} from {} on: no picture within {:.0f} s; where a driver compiles shaders for long, it does so once",
+              device, runs.back().job.scene, static_cast<double>(options.first_picture_limit->count()) / 1000));
+          late.insert(device);
           continue;
         }
       }
@@ -137,7 +144,7 @@ void measure_scene(std::span<const Configuration> configurations, const MeasureO
     // Recording on Vulkan would compile another shader, for minutes; the paths are the same.
     const auto cpu = std::ranges::find_if(
         used[i], [](const pathtracer::Renderer* each) { return each->scene().device().info().backend == "cpu"; });
-    if (cpu == used[i].end()) continue;
+    if (cpu == used[i].end() || jobs[i].settings.integrator == pathtracer::Integrator::metropolis) continue;
     (*cpu)->restart(jobs[i].settings);
     runs[i].shares = ray_shares(**cpu, jobs[i].samples);
   }
@@ -148,14 +155,17 @@ void measure_scene(std::span<const Configuration> configurations, const MeasureO
 
 BenchReport measure(std::span<const Configuration> configurations, const MeasureOptions& options) {
   BenchReport report{.rounds = options.rounds, .runs = {}};
+  std::set<std::string> late;
   while (!configurations.empty()) {
     const auto other = std::ranges::find_if(configurations, [&](const Configuration& each) {
       return each.options.scene != configurations.front().options.scene;
     });
     const auto count = static_cast<std::size_t>(other - configurations.begin());
-    measure_scene(configurations.first(count), options, report);
+    measure_scene(configurations.first(count), options, late, report);
     configurations = configurations.subspan(count);
   }
+  if (std::ranges::all_of(report.runs, [](const BenchRun& run) { return run.series.empty(); }))
+    throw Error(fmt::format("nothing was measured: {}", fmt::join(report.left_out, "; ")));
   report.peak_bytes = peak_memory();
   return report;
 }

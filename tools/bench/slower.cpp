@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +13,9 @@ namespace tandem::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// Of fewer, the intervals of equal times fail to overlap in some percent of cases.
+constexpr std::size_t fewest_rounds = 5;
 
 struct Series {
   std::string name;  ///< as a person reads it
@@ -45,12 +49,19 @@ SpeedChanges speed_changes(const Json& stored, const Json& now, double tolerance
   std::map<std::string, Series> before;
   try {
     before = series_of(stored);
-    for (const auto& [key, series] : before)
-      if (series.times.empty()) throw Error("it has a series without a round");
-  } catch (const std::exception& error) {
+  } catch (const nlohmann::json::exception& error) {
     throw Error(fmt::format("it is not what 'tandem bench --json' writes ({})", error.what()));
   }
-  for (const auto& [key, series] : series_of(now)) {
+  const std::map<std::string, Series> after = series_of(now);
+  for (const auto* each : std::array<const std::map<std::string, Series>*, 2>{&before, &after})
+    for (const auto& [key, series] : *each)
+      if (series.times.size() < fewest_rounds)
+        throw Error(fmt::format("{}: {} rounds are too few to tell what became slower; --repeat {} is the least",
+                                series.name, series.times.size(), fewest_rounds));
+  for (const auto& [key, series] : before)
+    if (!after.contains(key)) changes.gone.push_back(series.name);
+  if (changes.gone.size() == before.size()) throw Error("it has no scene under the same settings on the same device");
+  for (const auto& [key, series] : after) {
     const auto found = before.find(key);
     if (found == before.end()) {
       changes.unmatched.push_back(series.name);

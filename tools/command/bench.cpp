@@ -78,11 +78,12 @@ int compare_with_baseline(const Options& options, const nlohmann::ordered_json& 
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", options.baseline.string(), error.what()));
   }
-  print("\nBeside {}: {} slower, {} faster, {} unchanged, {} that it does not have\n", options.baseline.string(),
-        changes.slower.size(), changes.faster.size(), changes.unchanged, changes.unmatched.size());
+  print("\nBeside {}: {} slower, {} faster, {} unchanged, {} new, {} gone\n", options.baseline.string(),
+        changes.slower.size(), changes.faster.size(), changes.unchanged, changes.unmatched.size(), changes.gone.size());
   for (const std::string& sentence : changes.slower) print("  slower  {}\n", sentence);
   for (const std::string& sentence : changes.faster) print("  faster  {}\n", sentence);
-  for (const std::string& sentence : changes.unmatched) print("  new     {}\n", sentence);
+  for (const std::string& name : changes.unmatched) print("  new     {}\n", name);
+  for (const std::string& name : changes.gone) print("  gone    {}\n", name);
   return changes.slower.empty() ? exit_code::success : exit_code::failed;
 }
 
@@ -228,9 +229,10 @@ void add_bench_command(CLI::App& app, Action& action) {
       ->allow_extra_args(false);
   command->add_flag("--first-picture", options->first_picture,
                     "Time a program of its own from its start to the first picture, once for each device and setting");
-  command->add_flag("--quick", options->quick,
-                    "End within a minute: 128x128 pixels and 4 samples unless given, three rounds, and no device whose "
-                    "driver compiles shaders for long");
+  command->add_flag(
+      "--quick", options->quick,
+      "End within a minute: 128x128 pixels and 4 samples unless given, and no device whose driver compiles "
+      "shaders for long");
   command->add_option("--json", options->json, "Write all measurements, round by round, as JSON")->type_name("FILE");
   command->add_option("--csv", options->csv, "Write a line for each round")->type_name("FILE");
   command->add_option("--html", options->page, "Write a page with plots and tables, which opens from disk")
@@ -255,7 +257,6 @@ void add_bench_command(CLI::App& app, Action& action) {
       if (options->scenes.empty()) throw CLI::RequiredError("SCENE");
       collect_words(*command, own_options, options->words);
       if (options->quick) {
-        if (command->count("--repeat") == 0) options->rounds = 3;
         if (command->get_option("--spp")->count() == 0) options->words.insert(options->words.end(), {"--spp", "4"});
         if (command->get_option("--size")->count() == 0)
           options->words.insert(options->words.end(), {"--size", "128x128"});

@@ -26,10 +26,11 @@ struct Options {
   std::uint32_t most_walks = 65536;
   std::filesystem::path json;      ///< empty: none
   std::filesystem::path markdown;  ///< likewise
+  std::filesystem::path page;      ///< likewise
 };
 
 int study_markov(const Options& options) {
-  for (const std::filesystem::path& path : {options.json, options.markdown})
+  for (const std::filesystem::path& path : {options.json, options.markdown, options.page})
     if (!path.empty()) check_output_path(path);
   RenderOptions device_options;
   device_options.threads = options.threads;
@@ -47,6 +48,8 @@ int study_markov(const Options& options) {
         {options.json, [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }});
   if (!options.markdown.empty())
     files.push_back({options.markdown, [&](const std::filesystem::path& path) { write_text(path, markdown(report)); }});
+  if (!options.page.empty())
+    files.push_back({options.page, [&](const std::filesystem::path& path) { write_text(path, plots_page(report)); }});
   write_or_rescue(files);
   print_written(files);
   return exit_code::success;
@@ -71,6 +74,7 @@ void add_study_markov_command(CLI::App& group, Action& action) {
   add_whole_number(*command, "--seed", options->settings.walks.seed, 0, 0xffffffffu, "Seed of the random numbers");
   command->add_option("--json", options->json, "Write all measurements as JSON")->type_name("FILE");
   command->add_option("--markdown", options->markdown, "Write the tables as Markdown")->type_name("FILE");
+  command->add_option("--html", options->page, "Write a page with a plot for each equation")->type_name("FILE");
   command->footer(
       "The equations are u(x) = f(x) + integral of k(x, t) u(t) dt over [0, 1], Fredholm's of the second kind, with "
       "the\n"

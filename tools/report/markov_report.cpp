@@ -5,6 +5,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "compare/report/page_sources.hpp"
+#include "tools/output/xml_text.hpp"
+#include "tools/plot/plot.hpp"
 #include "tools/report/device_json.hpp"
 
 namespace tandem::tools {
@@ -61,6 +64,32 @@ nlohmann::ordered_json to_json(const WalkEstimatorResult& result) {
 }
 
 }  // namespace
+
+std::string plots_page(const MarkovReport& report) {
+  std::string html = fmt::format(
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Tandem: random walks</title>\n"
+      "<style>{}</style></head>\n<body><h1>Integral equations by random walks</h1>\n<p>On {}, {}.</p>\n",
+      compare::page_style(), xml_text(report.device.name), xml_text(report.device.description));
+  for (const FredholmResult& result : report.equations) {
+    Plot plot{.title = fmt::format("{}: {}", result.equation.name, result.equation.formula),
+              .x = {.label = "walks from each point", .is_logarithmic = true, .names = {}},
+              .y = {.label = "RMSE", .is_logarithmic = true},
+              .series = {}};
+    for (const WalkEstimatorResult& estimator : result.estimators) {
+      PlotSeries series{.label = fmt::format("{}, slope {:.2f}", name_of(estimator), estimator.slope()), .points = {}};
+      for (const WalkMeasurement& each : estimator.measurements)
+        series.points.push_back({.x = static_cast<double>(each.walks), .y = each.rmse});
+      plot.series.push_back(std::move(series));
+    }
+    PlotSeries root{.label = "N^-1/2", .points = {}, .has_marks = false, .is_dashed = true};
+    for (const WalkMeasurement& each : result.estimators.front().measurements)
+      root.points.push_back(
+          {.x = static_cast<double>(each.walks), .y = 1 / std::sqrt(static_cast<double>(each.walks))});
+    plot.series.push_back(std::move(root));
+    html += svg(plot);
+  }
+  return html + "</body></html>\n";
+}
 
 std::string markdown(const MarkovReport& report) {
   const study::WalkSettings& walks = report.settings.walks;

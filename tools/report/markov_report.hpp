@@ -19,6 +19,9 @@ struct MarkovReport {
 /// The tables in Markdown, which reads well on a terminal too.
 std::string markdown(const MarkovReport& report);
 
+/// A page with a plot for each equation: the error of every estimator against the number of walks, beside N^-1/2.
+std::string plots_page(const MarkovReport& report);
+
 /// The same for programs, with every measurement.
 nlohmann::ordered_json to_json(const MarkovReport& report);
 
