@@ -36,6 +36,21 @@ find_package(embree 4 QUIET CONFIG)
 if(NOT embree_FOUND)
   find_package(embree 3 REQUIRED CONFIG)
 endif()
+# The window of `tandem view`, which is left out where one of these is missing.
+find_package(glfw3 QUIET CONFIG)
+find_package(OpenGL QUIET)
+find_path(TANDEM_IMGUI_INCLUDE_DIRECTORY imgui.h PATH_SUFFIXES imgui)
+find_library(TANDEM_IMGUI_LIBRARY imgui)
+if(glfw3_FOUND AND OpenGL_OpenGL_FOUND AND TANDEM_IMGUI_INCLUDE_DIRECTORY AND TANDEM_IMGUI_LIBRARY)
+  set(TANDEM_HAS_VIEWER ON)
+  # Debian's library has the backends for GLFW and OpenGL 3 in it.
+  add_library(Tandem::imgui UNKNOWN IMPORTED)
+  set_target_properties(Tandem::imgui PROPERTIES IMPORTED_LOCATION "${TANDEM_IMGUI_LIBRARY}" INTERFACE_INCLUDE_DIRECTORIES
+                                                                                            "${TANDEM_IMGUI_INCLUDE_DIRECTORY}")
+else()
+  set(TANDEM_HAS_VIEWER OFF)
+  message(STATUS "tandem view is left out: it needs libglfw3-dev, libimgui-dev and libgl-dev")
+endif()
 if(TANDEM_BUILD_TESTS)
   find_package(doctest REQUIRED CONFIG)
   # Reads the JUnit files that the tools write.

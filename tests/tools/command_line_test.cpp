@@ -35,6 +35,7 @@ TEST_CASE("every command explains itself and all its options") {
   const std::map<std::string, std::string> options = {
       {"devices", "--json"},
       {"render", "SCENE --output --device Examples" + image},
+      {"view", "SCENE --a --b --device --arbiter --output --spp-per-frame --exposure Exit Examples" + image},
       {"diff",
        "SCENE --a --b --json --junit --out --report --baseline --metrics --classify --classify-pixels --survey "
        "--arbiter "
