@@ -34,7 +34,11 @@ LiveRendering::LiveRendering(std::shared_ptr<const pathtracer::Scene> scene, con
   }
   // All of them are there before one looks at the others.
   for (const std::unique_ptr<Worker>& worker : workers_)
-    worker->thread = std::thread([this, &worker = *worker] { run(worker); });
+    worker->thread = std::thread([this, &worker = *worker] {
+      run(worker);
+      const std::scoped_lock lock(mutex_);
+      worker.has_ended = true;
+    });
 }
 
 LiveRendering::~LiveRendering() {
@@ -46,6 +50,11 @@ void LiveRendering::stop() {
   const std::scoped_lock lock(mutex_);
   stopped_ = true;
   changed_.notify_all();
+}
+
+bool LiveRendering::has_ended() const {
+  const std::scoped_lock lock(mutex_);
+  return std::ranges::all_of(workers_, [](const auto& worker) { return worker->has_ended; });
 }
 
 void LiveRendering::show(View view, bool moving) {

@@ -76,6 +76,8 @@ class LiveRendering {
 
   /// Tells the threads to end soon, and waits for none.
   void stop();
+  /// Whether all threads have ended, so that the destructor waits for nothing.
+  bool has_ended() const;
 
  private:
   struct Worker {
@@ -83,6 +85,7 @@ class LiveRendering {
     DeviceState state = {};
     std::uint64_t revision = 0;  ///< of what it works at
     std::uint32_t frame = 0;     ///< finished of this revision
+    bool has_ended = false;
     std::thread thread = {};
   };
 

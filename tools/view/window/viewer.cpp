@@ -277,6 +277,7 @@ void Viewer::finish_task() {
   const auto is_ready = [](const auto& future) {
     return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
   };
+  std::erase_if(retired_, [](const std::unique_ptr<LiveRendering>& retired) { return retired->has_ended(); });
   if (is_ready(task_)) {
     TaskResult result = task_.get();
     state_.message = result.message;
@@ -435,7 +436,8 @@ void Viewer::compose_picture() {
 
 std::string Viewer::title() const {
   std::string text = fmt::format("{} - Tandem", state_.scene_file.filename().string());
-  for (const DeviceState& device : devices_) {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    const DeviceState& device = devices_[i];
     fmt::format_to(std::back_inserter(text), " | {} ", device.name);
     switch (device.activity) {
       case Activity::opening:
@@ -449,7 +451,7 @@ std::string Viewer::title() const {
         break;
       case Activity::rendering:
       case Activity::finished: {
-        const FrameHandle& frame = device.frame;
+        const FrameHandle& frame = i == 0 ? a_ : b_;  // what is shown
         text += !frame || frame->is_preview ? std::string("preview") : fmt::format("{} spp", frame->samples);
         break;
       }

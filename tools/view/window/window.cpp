@@ -79,7 +79,10 @@ Window::~Window() {
 
 bool Window::begin_frame(double wait_seconds) {
   glfwWaitEventsTimeout(wait_seconds);
-  if (glfwWindowShouldClose(window_) != 0) return false;
+  if (glfwWindowShouldClose(window_) != 0) {
+    glfwHideWindow(window_);  // a driver may still be compiling for long
+    return false;
+  }
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
