@@ -61,7 +61,9 @@ Json settings_json(const View& view, std::uint32_t samples) {
   if (settings.max_specular_depth) json["max_specular_depth"] = *settings.max_specular_depth;
   json["clamp_direct"] = double{settings.clamp_direct};
   json["clamp_indirect"] = double{settings.clamp_indirect};
-  json["occlusion_length"] = double{settings.occlusion_length};
+  // Without a bound by default, which is more than a description may say.
+  if (settings.occlusion_length != pathtracer::RenderSettings{}.occlusion_length)
+    json["occlusion_length"] = double{settings.occlusion_length};
   json["terminator_offset"] = settings.terminator_offset;
   return json;
 }

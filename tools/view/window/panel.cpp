@@ -236,6 +236,13 @@ void draw_panel(State& state, const std::vector<DeviceState>& devices, glm::ivec
   ImGui::End();
 }
 
+void draw_line(const State& state, glm::ivec2 offset, glm::ivec2 size) {
+  if (!state.two_devices() || state.display.mode != DisplayMode::split) return;
+  const float x = static_cast<float>(offset.x) + state.display.split * static_cast<float>(size.x);
+  const auto top = static_cast<float>(offset.y), bottom = static_cast<float>(offset.y + size.y);
+  ImGui::GetForegroundDrawList()->AddLine(ImVec2(x, top), ImVec2(x, bottom), IM_COL32(255, 255, 255, 160));
+}
+
 void draw_path(State& state) {
   if (state.path_text.empty()) return;
   bool open = true;

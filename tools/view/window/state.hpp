@@ -64,6 +64,8 @@ const std::vector<Shortcut>& shortcuts();
 
 /// Draws the panel into the rectangle. Reads and changes the state.
 void draw_panel(State& state, const std::vector<DeviceState>& devices, glm::ivec2 offset, glm::ivec2 size);
+/// Draws the line of split over the picture in the rectangle.
+void draw_line(const State& state, glm::ivec2 offset, glm::ivec2 size);
 /// The window with the path of a pixel, if there is one.
 void draw_path(State& state);
 

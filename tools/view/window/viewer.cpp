@@ -479,6 +479,7 @@ void Viewer::run() {
     compose_picture();
     window_.set_title(title());
     const Placement where = placement();
+    draw_line(state_, where.offset, where.size);
     window_.end_frame(where.offset, where.size);
   }
 }
