@@ -136,7 +136,7 @@ class Hand {
     // The middle is the line of split, which is to stay.
     const int x = left + width * scaled / 4, y = top + height * scaled / 2;
     screen_->hand(
-        fmt::format("mousemove {} {} {} mousedown {} sleep 0.1 mousemove {} {} sleep 0.1 mousemove {} {} "
+        fmt::format("mousemove {} {} sleep 0.2 {} mousedown {} sleep 0.1 mousemove {} {} sleep 0.1 mousemove {} {} "
                     "sleep 0.1 mouseup {} {}",
                     x, y, down, button, x + dx / 2, y + dy / 2, x + dx, y + dy, button, up));
   }
@@ -248,7 +248,7 @@ TEST_CASE("a person looks at a scene on two devices") {
   // A click shows the path; it is on both devices, since they are both the CPU.
   hand.key("3");
   const view::Picture before = screen.part(0, 0, 490, 480);
-  screen.hand(fmt::format("mousemove {} {} click 1", left + 10, top + 10));
+  screen.hand(fmt::format("mousemove {} {} sleep 0.2 click 1", left + 10, top + 10));
   for (int i = 0; i < 600 && screen.part(0, 0, 490, 480) == before; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
   CHECK(!(screen.part(0, 0, 490, 480) == before));

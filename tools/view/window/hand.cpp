@@ -86,7 +86,11 @@ void ViewerLoop::change_camera(const pathtracer::Camera& camera) {
 }
 
 void ViewerLoop::walk_by_keys(double elapsed) {
-  if (window_.is_pressed(GLFW_KEY_LEFT_CONTROL) || window_.is_pressed(GLFW_KEY_RIGHT_CONTROL)) return;
+  // Of ctrl+S, control may be up before S is.
+  constexpr auto release_time = std::chrono::milliseconds(300);
+  if (window_.is_pressed(GLFW_KEY_LEFT_CONTROL) || window_.is_pressed(GLFW_KEY_RIGHT_CONTROL))
+    last_control_ = Clock::now();
+  if (Clock::now() - last_control_ < release_time) return;
   const auto axis = [&](int forth, int back) {
     return double(window_.is_pressed(forth)) - double(window_.is_pressed(back));
   };

@@ -42,7 +42,11 @@ ViewerLoop::ViewerLoop(const Host& host, const ViewerOptions& options, compare::
           {static_cast<int>(std::clamp(job.settings.width, 160u, 2048u)) + panel_width,
            static_cast<int>(std::clamp(job.settings.height, 480u, 1400u))},
           "Tandem",
-          {.key = [this](int key, int modifiers) { press_key(state_, key, modifiers); },
+          {.key =
+               [this](int key, int modifiers) {
+                 if ((modifiers & GLFW_MOD_CONTROL) != 0) last_control_ = Clock::now();
+                 press_key(state_, key, modifiers);
+               },
            .button = [this](int button, bool pressed, int modifiers,
                             glm::dvec2 position) { press(button, pressed, modifiers, position); },
            .move = [this](glm::dvec2 position) { move(position); },

@@ -77,6 +77,7 @@ class ViewerLoop {
   std::future<compare::Job> loading_;
   bool moving_ = false;
   Clock::time_point last_change_ = Clock::now(), last_flicker_ = Clock::now();
+  Clock::time_point last_control_{};  ///< when the control key was last seen down
 
   int button_ = -1;  ///< that is down in the picture
   int modifiers_ = 0;
