@@ -52,5 +52,6 @@ void add_study_denoising_command(CLI::App& group, Action& action);
 void add_matrix_command(CLI::App& app, Action& action);
 void add_suite_command(CLI::App& app, Action& action);
 void add_run_command(CLI::App& app, Action& action);
+void add_view_command(CLI::App& app, Action& action);
 
 }  // namespace tandem::tools

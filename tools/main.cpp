@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   Action action;
   add_devices_command(app, action);
   add_render_command(app, action);
+  add_view_command(app, action);
   add_run_command(app, action);
   // Scenes and shaders have other options, and the same questions.
   if (names_program(std::span(argv, static_cast<std::size_t>(argc)))) {

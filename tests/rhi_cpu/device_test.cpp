@@ -7,6 +7,8 @@
 #include <atomic>
 #include <bit>
 #include <cfenv>
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <set>
 #include <thread>

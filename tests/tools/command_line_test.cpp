@@ -36,6 +36,7 @@ TEST_CASE("every command explains itself and all its options") {
       {"devices", "--json"},
       {"render",
        "SCENE --output --device --denoise --denoise-levels --denoise-strength --denoise-fireflies Examples" + image},
+      {"view", "SCENE --a --b --device --arbiter --output --spp-per-frame --exposure Exit Examples" + image},
       {"diff",
        "SCENE --a --b --json --junit --out --report --baseline --metrics --classify --classify-pixels --survey "
        "--arbiter "
