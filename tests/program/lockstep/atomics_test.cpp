@@ -24,14 +24,15 @@ constexpr std::uint32_t invocation_count = 16;
 
 /// Every invocation draws a ticket, and adds to a counter of its own.
 Job tickets() {
-  return {.shaders = {{.name = "tickets", .spirv = glsl::compile(R"(#version 460
+  return {.shaders = {{.name = "tickets",
+                       .spirv = glsl::compile(R"(#version 460
             layout(local_size_x = 4) in;
             layout(set = 0, binding = 0) buffer Tickets { uint next; uint drawn[16]; uint own[16]; };
             void main() {
               drawn[gl_GlobalInvocationID.x] = atomicAdd(next, 1u);
               atomicAdd(own[gl_GlobalInvocationID.x], 1u);
             })",
-                                                                   rhi::ShaderStage::compute, "tickets")}},
+                                              rhi::ShaderStage::compute, "tickets")}},
           .buffers = {{.name = "tickets", .initial = std::vector<std::byte>(std::size_t{4} * 33)}},
           .pipelines = {{.name = "tickets",
                          .stages = ComputeStages{},
