@@ -234,6 +234,7 @@ TEST_CASE("a person looks at a scene on two devices") {
     for (int i = 0; i < 100 && !(shown() == expected); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
     return shown() == expected;
   };
+  screen.hand("mousemove 480 470");  // the screen has the pointer in its pixels
   hand.key("1");
   settled("| a |");
   CHECK(shows(rendered[0]));
