@@ -67,7 +67,4 @@ class Material {
   bool opaque_ = true;
 };
 
-/// Throws Error, naming the material, for a model or a texture that the baseline does not have.
-std::unique_ptr<Material> make_material(const pathtracer::Scene& scene, std::size_t index);
-
 }  // namespace tandem::weekend

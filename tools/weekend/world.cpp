@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "tools/weekend/bvh.hpp"
+#include "tools/weekend/models.hpp"
 #include "tools/weekend/shapes.hpp"
 
 namespace tandem::weekend {
