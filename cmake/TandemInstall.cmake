@@ -14,6 +14,9 @@ install(TARGETS tandem RUNTIME)
 if(TARGET tandem_image_openimageio)
   install(TARGETS tandem_image_openimageio LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/tandem")
 endif()
+if(TARGET tandem_view_window)
+  install(TARGETS tandem_view_window LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}/tandem")
+endif()
 
 # Every library of the project, except those that only its tests use.
 get_property(tandem_libraries GLOBAL PROPERTY TANDEM_LIBRARIES)

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,7 +20,9 @@
 #include "tools/report/explanation_report.hpp"
 #include "tools/report/report_page.hpp"
 #if TANDEM_HAS_VIEWER
-#include "tools/view/window/viewer.hpp"
+#include <dlfcn.h>
+
+#include "tools/view/window/viewer_module.hpp"
 #endif
 
 namespace tandem::tools {
@@ -36,6 +39,22 @@ struct Options {
 };
 
 #if TANDEM_HAS_VIEWER
+
+/// The window's library, found by the run path of the program. Throws Error.
+const view::ViewerModule& viewer() {
+  const auto fail = [](const std::string& why) {
+    return Error(fmt::format("the library for windows cannot be loaded: {}", why));
+  };
+  void* const library = ::dlopen(TANDEM_VIEWER_FILE, RTLD_LAZY | RTLD_LOCAL);
+  if (library == nullptr) throw fail(::dlerror());
+  const auto entry = reinterpret_cast<view::ViewerEntry>(::dlsym(library, view::viewer_entry));
+  if (entry == nullptr) throw fail(fmt::format("'{}' exports no {}", TANDEM_VIEWER_FILE, view::viewer_entry));
+  const view::ViewerModule& module = *entry();
+  if (module.version != std::string_view(TANDEM_VERSION))
+    throw fail(
+        fmt::format("'{}' is of Tandem {}, this program of {}", TANDEM_VIEWER_FILE, module.version, TANDEM_VERSION));
+  return module;
+}
 
 /// Scene files in the folder of the one that is shown.
 std::vector<std::filesystem::path> scenes_beside(const std::filesystem::path& scene) {
@@ -56,6 +75,7 @@ std::vector<std::filesystem::path> scenes_beside(const std::filesystem::path& sc
 
 int view(const Options& options) {
   check_output_path(options.output.string() + ".json");
+  const view::ViewerModule& module = viewer();
   view::ViewerOptions wanted;
   wanted.a = {options.a, options.render.trace};
   wanted.b = {options.b, options.render.trace};
@@ -88,7 +108,7 @@ int view(const Options& options) {
             write_text(folder / "index.html", report_page(session, comparison, json_text(to_json(comparison))));
           },
       .write_text = [](const std::filesystem::path& file, const std::string& text) { write_text(file, text); }};
-  view::run_viewer(host, wanted, host.load(options.render.scene));
+  module.run_viewer(host, wanted, host.load(options.render.scene));
   return exit_code::success;
 }
 
