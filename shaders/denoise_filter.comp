@@ -19,7 +19,7 @@ bool is_inside(ivec2 position) {
 }
 
 /// Of the cubic B-spline: 3/8, 1/4, 1/16.
-float kernel_weight(int offset) { return offset == 0 ? 0.375 : (abs(offset) == 1 ? 0.25 : 0.0625); }
+float kernel_weight(int offset) { return offset == 0 ? 0.375 : (offset == 1 || offset == -1 ? 0.25 : 0.0625); }
 
 /// The variance around a pixel by a 3x3 Gaussian: that of a single pixel is too noisy itself.
 precise float smooth_variance(ivec2 position) {

@@ -82,14 +82,18 @@ void store_chain(Proposal state) {
 /// heuristic; Kelemen et al., section 3.3), in units of the scale.
 precise vec3 weighted_radiance(Proposal path) {
   precise float denominator = path.luminance * metropolis.inverse_scale + metropolis.large_step;
-  return path.radiance * det_div(metropolis.inverse_scale, denominator);
+  precise vec3 weighted = path.radiance * det_div(metropolis.inverse_scale, denominator);
+  return weighted;
 }
 
 void count_large_step(uint chain, float luminance) {
   precise float sum = large_steps[chain].sum;
   precise float lost = large_steps[chain].lost;
   precise float next = sum + luminance;
-  lost += sum >= luminance ? (sum - next) + luminance : (luminance - next) + sum;
+  precise float larger = sum >= luminance ? sum : luminance;
+  precise float smaller = sum >= luminance ? luminance : sum;
+  precise float rest = (larger - next) + smaller;
+  lost += rest;
   large_steps[chain].sum = next;
   large_steps[chain].lost = lost;
   large_steps[chain].count += 1;
@@ -136,8 +140,11 @@ void metropolis_light_transport(uint invocation) {
       // Both the proposal and the state count, with the probability that they are the next state.
       precise vec3 proposed = weighted_radiance(proposal);
       uint group = (index & 1u) * render.resolution.x * render.resolution.y;
-      splat(group + proposal.pixel, proposed * acceptance);
-      splat(group + state.pixel, weighted_radiance(state) * (1.0 - acceptance));
+      precise vec3 of_proposal = proposed * acceptance;
+      precise float rejection = 1.0 - acceptance;
+      precise vec3 of_state = weighted_radiance(state) * rejection;
+      splat(group + proposal.pixel, of_proposal);
+      splat(group + state.pixel, of_state);
       if (chain_is_large) {
         splat_large(proposal.pixel, proposed);
         count_large_step(index, proposal.luminance);

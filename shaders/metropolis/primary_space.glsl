@@ -28,8 +28,10 @@ uint slot_of(uint dimension) {
 
 /// A number of the torus [0, 1) in units of 2^-32, moved by a small mutation.
 uint mutated(uint value, uint bits) {
-  precise float size = LARGEST_MUTATION * det_exp(-LOG_MUTATION_RANGE * unit_interval(bits));
-  uint distance = uint(size * 4294967296.0);
+  precise float exponent = -LOG_MUTATION_RANGE * unit_interval(bits);
+  precise float size = LARGEST_MUTATION * det_exp(exponent);
+  precise float units = size * 4294967296.0;
+  uint distance = uint(units);
   return (bits & 1u) != 0 ? value + distance : value - distance;
 }
 
@@ -39,7 +41,8 @@ uint drifted(uint value, uint bits, uint count) {
   precise float sum = float((bits & 0xffu) + (bits >> 8 & 0xffu) + (bits >> 16 & 0xffu) + (bits >> 24)) * 0.00390625;
   precise float distance = (sum - 1.9921875) * 1.73205078 * MUTATION_DEVIATION * det_sqrt(float(count));
   precise float part = distance - floor(distance);
-  return value + (uint(part * 16777216.0) << 8);
+  precise float units = part * 16777216.0;
+  return value + (uint(units) << 8);
 }
 
 /// The numbers of the chain's current state. They are mutated when they are read only (lazily): a path may have had no

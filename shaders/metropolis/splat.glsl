@@ -11,7 +11,9 @@
 const float SPLAT_UNITS = 268435456.0;
 
 uint splat_units(float value) {
-  precise float units = value > 0.0 ? value * SPLAT_UNITS + 0.5 : 0.0;
+  precise float scaled_value = value * SPLAT_UNITS;
+  precise float units = scaled_value + 0.5;
+  if (!(value > 0.0)) units = 0.0;
   return units < 4294967040.0 ? uint(units) : 4294967040u;
 }
 
