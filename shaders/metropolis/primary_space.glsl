@@ -35,6 +35,10 @@ uint mutated(uint value, uint bits) {
   return (bits & 1u) != 0 ? value + distance : value - distance;
 }
 
+uvec4 mutated(uvec4 value, uvec4 bits) {
+  return uvec4(mutated(value.x, bits.x), mutated(value.y, bits.y), mutated(value.z, bits.z), mutated(value.w, bits.w));
+}
+
 /// The same by about as much as `count` small mutations move it.
 uint drifted(uint value, uint bits, uint count) {
   // The sum of four uniform numbers is nearly normal, with a variance of 1 / 3.
@@ -45,13 +49,21 @@ uint drifted(uint value, uint bits, uint count) {
   return value + (uint(units) << 8);
 }
 
+uvec4 chain_numbers(uint word) { return uvec4(chains[word], chains[word + 1], chains[word + 2], chains[word + 3]); }
+
+void store_chain_numbers(uint word, uvec4 numbers) {
+  chains[word] = numbers.x;
+  chains[word + 1] = numbers.y;
+  chains[word + 2] = numbers.z;
+  chains[word + 3] = numbers.w;
+}
+
 /// The numbers of the chain's current state. They are mutated when they are read only (lazily): a path may have had no
 /// use for them for a while. The first mutation missed has to be one of those of proposals, for the chain to be in
 /// balance; any further ones may have every distribution that leaves uniform numbers uniform, because the states since
 /// did not depend on them.
 uvec4 current_bits(uint word, uint dimension) {
-  uvec4 value = uvec4(chains[word + SLOT_CURRENT], chains[word + SLOT_CURRENT + 1], chains[word + SLOT_CURRENT + 2],
-                      chains[word + SLOT_CURRENT + 3]);
+  uvec4 value = chain_numbers(word + SLOT_CURRENT);
   uint time = chains[word + SLOT_TIME];
   if (time == chain_time) return value;
   if (time < chain_large_time) {
@@ -61,18 +73,14 @@ uvec4 current_bits(uint word, uint dimension) {
   uint missed = chain_time - time;
   if (missed != 0) {
     uvec4 bits = stream_bits(STREAM_DRIFT, chain_proposal, dimension);
-    value = uvec4(mutated(value.x, bits.x), mutated(value.y, bits.y), mutated(value.z, bits.z),
-                  mutated(value.w, bits.w));
+    value = mutated(value, bits);
     if (missed != 1) {
       bits = pcg4d(bits);
       value = uvec4(drifted(value.x, bits.x, missed - 1), drifted(value.y, bits.y, missed - 1),
                     drifted(value.z, bits.z, missed - 1), drifted(value.w, bits.w, missed - 1));
     }
   }
-  chains[word + SLOT_CURRENT] = value.x;
-  chains[word + SLOT_CURRENT + 1] = value.y;
-  chains[word + SLOT_CURRENT + 2] = value.z;
-  chains[word + SLOT_CURRENT + 3] = value.w;
+  store_chain_numbers(word + SLOT_CURRENT, value);
   chains[word + SLOT_TIME] = chain_time;
   return value;
 }
@@ -83,21 +91,16 @@ uvec4 proposed_bits(uint dimension) {
   if (slot == NO_SLOT) return stream_bits(STREAM_FRESH, chain_proposal, dimension);
   uint word = chain_base + CHAIN_HEADER + SLOT_WORDS * slot;
   if (chains[word + SLOT_STEP] == chain_step)
-    return uvec4(chains[word + SLOT_PROPOSED], chains[word + SLOT_PROPOSED + 1], chains[word + SLOT_PROPOSED + 2],
-                 chains[word + SLOT_PROPOSED + 3]);
+    return chain_numbers(word + SLOT_PROPOSED);
   uvec4 value;
   if (chain_is_large) {
     value = stream_bits(STREAM_FRESH, chain_proposal, dimension);
   } else {
     uvec4 bits = stream_bits(STREAM_SMALL, chain_proposal, dimension);
     value = current_bits(word, dimension);
-    value = uvec4(mutated(value.x, bits.x), mutated(value.y, bits.y), mutated(value.z, bits.z),
-                  mutated(value.w, bits.w));
+    value = mutated(value, bits);
   }
-  chains[word + SLOT_PROPOSED] = value.x;
-  chains[word + SLOT_PROPOSED + 1] = value.y;
-  chains[word + SLOT_PROPOSED + 2] = value.z;
-  chains[word + SLOT_PROPOSED + 3] = value.w;
+  store_chain_numbers(word + SLOT_PROPOSED, value);
   chains[word + SLOT_STEP] = chain_step;
   return value;
 }

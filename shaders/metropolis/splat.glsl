@@ -17,24 +17,17 @@ uint splat_units(float value) {
   return units < 4294967040.0 ? uint(units) : 4294967040u;
 }
 
-void splat(uint pixel, vec3 value) {
-  uvec3 units = uvec3(splat_units(value.x), splat_units(value.y), splat_units(value.z));
-  for (uint i = 0; i < 3; ++i) {
-    if (units[i] == 0) continue;
-    uint word = 6 * pixel + 2 * i;
-    uint before = atomicAdd(splats[word], units[i]);
-    if (before + units[i] < before) atomicAdd(splats[word + 1], 1u);
+// GLSL gives no function an array of a buffer.
+#define SPLAT_INTO(sums, pixel, value)                                                                      \
+  uvec3 units = uvec3(splat_units((value).x), splat_units((value).y), splat_units((value).z));              \
+  for (uint i = 0; i < 3; ++i) {                                                                            \
+    if (units[i] == 0) continue;                                                                            \
+    uint word = 6 * (pixel) + 2 * i;                                                                        \
+    uint before = atomicAdd(sums[word], units[i]);                                                          \
+    if (before + units[i] < before) atomicAdd(sums[word + 1], 1u);                                          \
   }
-}
 
-void splat_large(uint pixel, vec3 value) {
-  uvec3 units = uvec3(splat_units(value.x), splat_units(value.y), splat_units(value.z));
-  for (uint i = 0; i < 3; ++i) {
-    if (units[i] == 0) continue;
-    uint word = 6 * pixel + 2 * i;
-    uint before = atomicAdd(large_splats[word], units[i]);
-    if (before + units[i] < before) atomicAdd(large_splats[word + 1], 1u);
-  }
-}
+void splat(uint pixel, vec3 value) { SPLAT_INTO(splats, pixel, value) }
+void splat_large(uint pixel, vec3 value) { SPLAT_INTO(large_splats, pixel, value) }
 
 #endif

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -10,12 +9,8 @@
 #include "compare/study/sampling_study.hpp"
 #include "compare/study/study_scenes.hpp"
 #include "tools/command.hpp"
-#include "tools/options/device_options.hpp"
-#include "tools/options/job.hpp"
 #include "tools/options/option_values.hpp"
-#include "tools/output/interruption.hpp"
-#include "tools/output/output_file.hpp"
-#include "tools/output/print.hpp"
+#include "tools/options/study_options.hpp"
 #include "tools/output/progress_bar.hpp"
 #include "tools/report/device_json.hpp"
 #include "tools/report/study_report.hpp"
@@ -24,19 +19,12 @@ namespace tandem::tools {
 namespace {
 
 struct Options {
-  std::string device = "cpu";
-  std::uint32_t threads = 0;
+  StudyOptions study;
   study::StudySettings settings;
-  std::filesystem::path json;      ///< empty: none
-  std::filesystem::path markdown;  ///< likewise
 };
 
 int study_sampling(const Options& options) {
-  for (const std::filesystem::path& path : {options.json, options.markdown})
-    if (!path.empty()) check_output_path(path);
-  RenderOptions device_options;
-  device_options.threads = options.threads;
-  const rhi::DeviceHandle device = open_device(options.device, device_options);
+  const rhi::DeviceHandle device = open_study_device(options.study);
   StudyReport report{.device = device->info(), .settings = options.settings, .scenes = {}};
   struct Subject {
     pathtracer::Scene scene;
@@ -50,15 +38,7 @@ int study_sampling(const Options& options) {
     if (!result) throw Cancelled();
     report.scenes.push_back(std::move(*result));
   }
-  print("{}", markdown(report));
-  std::vector<OutputFile> files;
-  if (!options.json.empty())
-    files.push_back(
-        {options.json, [&](const std::filesystem::path& path) { write_text(path, json_text(to_json(report))); }});
-  if (!options.markdown.empty())
-    files.push_back({options.markdown, [&](const std::filesystem::path& path) { write_text(path, markdown(report)); }});
-  write_or_rescue(files);
-  print_written(files);
+  finish_study(options.study, {.markdown = markdown(report), .json = json_text(to_json(report)), .page = {}});
   return exit_code::success;
 }
 
@@ -70,16 +50,11 @@ void add_study_command(CLI::App& app, Action& action) {
   CLI::App* const command = group->add_subcommand(
       "sampling", "Error, variance, time and order of convergence of every sampler and integrator option");
   const auto options = std::make_shared<Options>();
-  add_device(*command, options->device, "Device to render on, as listed by 'tandem devices'",
-             "run the study once for each");
-  add_whole_number(*command, "--threads", options->threads, 0, 4096,
-                   "Worker threads of the CPU devices; 0: one per hardware thread");
+  add_study_options(*command, options->study);
   add_whole_number(*command, "--size", options->settings.size, 1, 4096,
                    "Width and height of the square images, in pixels");
   add_whole_number(*command, "--reference-spp", options->settings.reference_samples, 1, 1u << 24,
                    "Samples per pixel of the reference image");
-  command->add_option("--json", options->json, "Write all measurements as JSON")->type_name("FILE");
-  command->add_option("--markdown", options->markdown, "Write the tables as Markdown")->type_name("FILE");
   command->footer(
       "The scenes are built in: the Cornell box of Ray Tracing in One Weekend's series, Veach's plates, and a light "
       "over\n"

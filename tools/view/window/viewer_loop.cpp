@@ -122,7 +122,6 @@ void ViewerLoop::answer_wants() {
 }
 
 /// Shows what is new; of two devices only pictures of the same samples, once there are any of the view.
-
 void ViewerLoop::take_frames() {
   devices_ = rendering_->states();
   FrameHandle a = devices_[0].frame, b = devices_.size() > 1 ? devices_[1].frame : nullptr;
