@@ -28,6 +28,8 @@ td, th { text-align: right; padding: .15rem .6rem; } td:first-child, th:first-ch
 .warning { color: var(--bad); }
 )";
 
+std::string file_name(const std::string& scene) { return scene.substr(scene.rfind('/') + 1); }
+
 /// The number that stands for a value on an axis: pixels for a size.
 std::optional<double> number_of(std::string_view value) {
   const auto parsed = [](std::string_view text) -> std::optional<double> {
@@ -57,7 +59,7 @@ Plot plot_of(const std::vector<const BenchRun*>& runs, std::size_t option) {
   const bool is_numeric =
       std::ranges::all_of(values, [](const std::string& each) { return number_of(each).has_value(); });
   const bool has_size = is_numeric && values.front().find('x') != std::string::npos;
-  Plot plot{.title = fmt::format("{}: frame time against {}", runs.front()->job.scene, name),
+  Plot plot{.title = fmt::format("{}: frame time against {}", file_name(runs.front()->job.scene), name),
             .x = {.label = has_size ? "pixels" : name, .includes_zero = true, .names = {}},
             .y = {.label = "milliseconds", .includes_zero = true},
             .series = {}};
@@ -89,8 +91,7 @@ Plot plot_of_scenes(const BenchReport& report) {
             .series = {}};
   std::map<std::string, std::size_t> places;
   for (std::size_t i = 0; i < report.runs.size(); ++i) {
-    const std::string& scene = report.runs[i].job.scene;
-    plot.x.names.push_back(scene.substr(scene.rfind('/') + 1));
+    plot.x.names.push_back(file_name(report.runs[i].job.scene));
     for (const BenchSeries& series : report.runs[i].series) {
       const auto [place, is_new] = places.try_emplace(series.device.name, plot.series.size());
       if (is_new) plot.series.push_back({.label = series.device.name, .points = {}, .has_line = false});
@@ -155,8 +156,11 @@ std::string bench_page(const BenchReport& report, const std::string& command, co
       compare::page_style(), bench_style, xml_text(command), report.rounds);
   for (const std::string& sentence : report.left_out)
     html += fmt::format("<p class=\"warning\">Left out: {}.</p>\n", xml_text(sentence));
-  for (const std::string& sentence : noise_warnings(report))
-    html += fmt::format("<p class=\"warning\">Noisy: {}.</p>\n", xml_text(sentence));
+  if (const std::vector<std::string> noisy = noise_warnings(report); !noisy.empty()) {
+    html += fmt::format("<details class=\"warning\"><summary>{} noisy series</summary>\n", noisy.size());
+    for (const std::string& sentence : noisy) html += fmt::format("<p>{}.</p>\n", xml_text(sentence));
+    html += "</details>\n";
+  }
   html += fmt::format("<div class=\"plots\">\n{}</div>\n", plots(report));
   for (const BenchRun& run : report.runs) html += table_of(run);
   html += fmt::format(
